@@ -13,7 +13,8 @@ import numpy
 import rosgraph
 from curve_proximity.msg import ProximityQuery
 from curve_proximity.srv import ApplyScene, ApplySceneRequest, DistanceRequest, Distance
-from helpers import Call, Node, Server, bezier, handshake, is_sanitized, raw_call, request_of_points, ring_and_shells, run, serialized, sphere, until
+from helpers import (Call, Node, Server, bezier, handshake, host_and_port, is_sanitized, raw_call, request_of_points, ring_and_shells, run,
+                     serialized, sphere, until)
 
 LIMIT_MB = 300
 ROOM_MB = 64
@@ -49,11 +50,8 @@ class Attacks(unittest.TestCase):
             peak, = re.findall(r'VmHWM:\s*(\d+)', status.read())
         self.assertLess(int(peak) / 1024, LIMIT_MB + ROOM_MB)
 
-    def send(self, service, kind, message, copies=1):
+    def send(self, service, kind, data, copies=1):
         """The same bytes over as many connections at once; the answers, None where a connection was closed."""
-        return self.send_bytes(service, kind, serialized(message), copies)
-
-    def send_bytes(self, service, kind, data, copies=1):
         calls = [Call(lambda: raw_call('/attacked/' + service, kind, data)) for _ in range(copies)]
         for one in calls:
             one.join(60)
@@ -63,18 +61,18 @@ class Attacks(unittest.TestCase):
     def test_one_request_with_a_long_id(self):
         self.server.apply(*[sphere('ball%d' % i, 0.1, (i, 0, -5)) for i in range(400)])
         curve = bezier(*((-1, 0, 1), (1, 0, 1)), id='x' * 900000)
-        answer, = self.send('distance', Distance, DistanceRequest(ProximityQuery(curves=[curve], per_object=True)))
+        answer, = self.send('distance', Distance, serialized(DistanceRequest(ProximityQuery(curves=[curve], per_object=True))))
         self.assertFalse(answer.success)
         self.assertIn('max_name_length', answer.message)
         self.assertLess(len(answer.message), 300)
-        answer, = self.send('apply_scene', ApplyScene, ApplySceneRequest(objects=[sphere('y' * 900000, 1.0)]))
+        answer, = self.send('apply_scene', ApplyScene, serialized(ApplySceneRequest(objects=[sphere('y' * 900000, 1.0)])))
         self.assertIn('max_name_length', answer.message)
         self.assertHeld()
 
     def test_millions_of_points_in_one_body(self):
         for copies, points in ((1, 5000000), (4, 1500000)):
             data = request_of_points(numpy.random.default_rng(1).random((points, 3)).tobytes())
-            answers = self.send_bytes('apply_scene', ApplyScene, data, copies)
+            answers = self.send('apply_scene', ApplyScene, data, copies)
             for answer in answers:
                 if answer is not None:
                     self.assertFalse(answer.success)
@@ -85,9 +83,9 @@ class Attacks(unittest.TestCase):
     def test_a_flood_of_small_strings_and_claimed_counts(self):
         # two million empty names take 8 MB on the wire and 64 MB as strings
         data = serialized(DistanceRequest(ProximityQuery(curves=[LINE], objects=[''] * 2000000)))
-        self.send_bytes('distance', Distance, data, 6)
+        self.send('distance', Distance, data, 6)
         for count in (1 << 20, 1 << 26, (1 << 32) - 1):
-            self.assertEqual(self.send_bytes('distance', Distance, struct.pack('<I', count) + b'\0' * 60, 3), [None] * 3)
+            self.assertEqual(self.send('distance', Distance, struct.pack('<I', count) + b'\0' * 60, 3), [None] * 3)
         self.assertHeld()
 
     def test_a_small_request_with_a_large_answer(self):
@@ -124,10 +122,10 @@ class Attacks(unittest.TestCase):
         self.assertHeld()
 
     def test_connections_that_announce_gigabytes_and_send_little(self):
-        address = rosgraph.Master('/test').lookupService('/attacked/distance').split('//')[1].split(':')
+        address = host_and_port(rosgraph.Master('/test').lookupService('/attacked/distance'))
         opened = []
         for size in [900000000] * 8 + [50000000] * 8:
-            connection = socket.create_connection((address[0], int(address[1])), 5)
+            connection = socket.create_connection(address, 5)
             connection.sendall(handshake(service='/attacked/distance', md5sum=Distance._md5sum) + struct.pack('<I', size))
             opened.append(connection)
         time.sleep(0.3)

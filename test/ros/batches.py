@@ -9,7 +9,7 @@ import unittest
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from curve_proximity.msg import QueryAction, QueryActionFeedback, QueryActionResult, QueryGoal
-from helpers import ActionClient, Server, bezier, query, ring_and_shells, run, sphere, until
+from helpers import ActionClient, Server, bezier, heard, query, ring_and_shells, run, sphere, until
 
 
 class Batches(unittest.TestCase):
@@ -17,7 +17,6 @@ class Batches(unittest.TestCase):
     def setUpClass(cls):
         cls.server = Server()
         cls.client = ActionClient('/curve_proximity/query', QueryAction)
-        assert cls.client.wait_for_server(rospy.Duration(20))
 
     def send(self, seconds=60, **fields):  # on a machine that builds beside it, too
         """One goal; its state and its result."""
@@ -76,9 +75,8 @@ class Batches(unittest.TestCase):
 
     def test_a_batch_ends_when_its_client_is_killed(self):
         self.server.replace(*ring_and_shells()[1])
-        results, feedback = [], []
-        rospy.Subscriber('/curve_proximity/query/result', QueryActionResult, results.append)
-        rospy.Subscriber('/curve_proximity/query/feedback', QueryActionFeedback, feedback.append)
+        results = heard('/curve_proximity/query/result', QueryActionResult)
+        feedback = heard('/curve_proximity/query/feedback', QueryActionFeedback)
         with subprocess.Popen([sys.executable, __file__, '--send', '/curve_proximity']) as client:
             self.addCleanup(client.kill)
             self.assertTrue(until(lambda: feedback, 20) and not results)
@@ -108,7 +106,6 @@ def send_and_stay(server):
     """A client as a process of its own, with a goal of minutes. bench/ros/reactions.py starts it, too."""
     rospy.init_node('client', anonymous=True)
     client = ActionClient(server + '/query', QueryAction)
-    assert client.wait_for_server(rospy.Duration(20))
     ring, _, fields = ring_and_shells()
     client.send_goal(QueryGoal(query_type='distance', query=query([ring] * 50, **fields)))
     rospy.spin()

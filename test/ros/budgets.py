@@ -5,12 +5,11 @@ seconds to a machine that does other things: without a look at the budget each o
 table has what was measured."""
 import math
 import time
-import unittest
 
 import rospy
 from curve_proximity import srv
 from curve_proximity.msg import Body, CollisionObject, ConstraintQuery, PairQuery, RobotTrajectory
-from helpers import (Node, RawClient, Server, bezier, box, bspline, framed, joint_trajectory, joints, moving, path, point, pose, query, run,
+from helpers import (Case, Node, RawClient, Server, bezier, box, bspline, framed, joint_trajectory, joints, moving, path, point, pose, query, run,
                      serialized, sphere, turned, waypoint)
 
 SEARCHES = [srv.Distance, srv.Tolerance, srv.Collision]
@@ -61,7 +60,7 @@ def way(poses):
     return out
 
 
-class Budgets(unittest.TestCase):
+class Budgets(Case):
     @classmethod
     def setUpClass(cls):
         cls.rows, cls.node = [], None
@@ -76,12 +75,11 @@ class Budgets(unittest.TestCase):
         """links: of the server's robot; 0: it has none, and curves need no joints."""
         robot = dict(robot_description='/budget_robot') if links else {}
         if links:
-            rospy.set_param('/budget_robot', chain(links))
-            self.addCleanup(rospy.delete_param, '/budget_robot')
+            self.set_param('/budget_robot', chain(links))
         node = Node(name, **robot, budget_ms=1e3 * BUDGET, threads=2, max_wait_ms=60000.0)
         self.addCleanup(node.end)
-        self.name, self.server = name, Server('/' + name, timeout=60)
-        return self.server
+        self.name = name
+        return Server('/' + name, timeout=60)
 
     def asks(self, what, kind, request):
         """One call; its time is from the last byte that is sent to the first that comes back."""

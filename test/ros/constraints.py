@@ -6,7 +6,7 @@ import math
 from curve_proximity.msg import ConstraintQuery
 from curve_proximity.srv import EvaluateConstraints
 from geometry_msgs.msg import Pose
-from helpers import Case, Server, bezier, box, mesh, plane, pose, refusal, run, service, sphere, thing
+from helpers import Case, Server, bezier, box, mesh, plane, pose, run, service, sphere, thing
 
 CURVES = 'curve_proximity/CurveDistance'
 
@@ -155,9 +155,6 @@ class Constraints(Case):
 
 
 class WrongProviders(Case):
-    def stopped(self, providers):
-        return refusal(self, 'wrong_providers', constraint_providers=providers)
-
     def test_each_stops_the_node_which_names_the_parameter(self):
         gap = 'curve_proximity/FourierGap'
         cases = [('all of them', '~constraint_providers: a list'),
@@ -176,7 +173,7 @@ class WrongProviders(Case):
                   "~constraint_providers[0] ('mine'): parameter margin: -1 is not at least 0")]
         for providers, word in cases:
             with self.subTest(providers=providers):
-                self.assertIn(word, self.stopped(providers))
+                self.assertIn(word, self.stopped(constraint_providers=providers))
 
     def test_a_plugin_that_fails_is_told_by_name_and_the_node_serves(self):
         node, server = self.begin('faulty', constraint_providers=[{'name': 'mine', 'type': 'faulty_provider/NoLibrary'}])

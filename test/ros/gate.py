@@ -6,19 +6,20 @@ import math
 import signal
 import threading
 import time
-import unittest
 
 import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from curve_proximity.msg import CollisionObject, Proximity, Refusal
 from foreign_types import control
-from helpers import (ActionClient, Node, Server, connected, free_flight, joint_trajectory, joints, moving, path, run, sphere, thing, turned,
-                     until, waypoint)
+from helpers import (ActionClient, Case, Node, Server, connected, free_flight, heard, joint_trajectory, joints, moving, path, run, sphere,
+                     thing, turned, until, waypoint)
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 Action, Goal, Result, Feedback = (getattr(control, 'FollowJointTrajectory' + name) for name in ('Action', 'Goal', 'Result', 'Feedback'))
+POST = sphere('post', 0.1, (0, 0.5, 0.5))  # where the arm is after a quarter turn
+FAR = sphere('far', 0.1, (0, 0, 5))
 
 
 class Arm:
@@ -103,24 +104,36 @@ def ends_of(client, seconds=10):
     return client.get_state(), client.get_result().error_string
 
 
-class Gate(unittest.TestCase):
+class ArmCase(Case):
+    """An arm that tells where it is by STATES, its controller, and a client of the gate before it."""
+    STATES = '/curve_proximity/joint_states'
+
     @classmethod
     def setUpClass(cls):
-        cls.states = rospy.Publisher('/curve_proximity/joint_states', JointState, queue_size=5)
+        cls.states = rospy.Publisher(cls.STATES, JointState, queue_size=5)
         cls.arm = Arm(cls.states)
-        cls.server, cls.controller, cls.refused, cls.passed = Server(), Controller(cls.arm), [], []
-        heard = [rospy.Subscriber('/gate/refused', Refusal, cls.refused.append),
-                 rospy.Subscriber('/gate/clear_trajectory', JointTrajectory, cls.passed.append),
-                 rospy.Subscriber('/gate/clear_trajectory', JointTrajectory, cls.arm.take)]
-        cls.topic = rospy.Publisher('/curve_proximity/trajectory', JointTrajectory, queue_size=5)
+        cls.controller = Controller(cls.arm)
         cls.client = ActionClient('/gate/follow_joint_trajectory', Action)
-        assert cls.client.wait_for_server(rospy.Duration(20))
-        assert connected(cls.states, cls.topic, *heard)
         time.sleep(1.0)  # the gate finds the controller
+
+    def follow(self, trajectory, client=None):
+        """Sends a goal, which begins."""
+        client = client or self.client
+        client.send_goal(Goal(trajectory=trajectory))
+        self.assertTrue(until(self.controller.server.is_active, 5), client.get_goal_status_text())
+
+
+class Gate(ArmCase):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.server, cls.refused, cls.passed = Server(), heard('/gate/refused', Refusal), heard('/gate/clear_trajectory', JointTrajectory)
+        cls.topic = rospy.Publisher('/curve_proximity/trajectory', JointTrajectory, queue_size=5)
+        assert connected(cls.states, cls.topic, rospy.Subscriber('/gate/clear_trajectory', JointTrajectory, cls.arm.take))
 
     def setUp(self):
         self.arm.rest()
-        self.server.replace(sphere('far', 0.1, (0, 0, 5)))
+        self.server.replace(FAR)
         del self.refused[:], self.passed[:]
 
     def sent(self, trajectory):
@@ -136,7 +149,7 @@ class Gate(unittest.TestCase):
 
     def test_a_goal_that_is_not_clear_is_rejected_with_pair_time_and_distance(self):
         begun = self.controller.begun
-        self.server.apply(sphere('post', 0.1, (0, 0.5, 0.5)))  # where the arm is after a quarter turn
+        self.server.apply(POST)
         state, why = self.sent(turning(3.0, 2.0))
         self.assertEqual((state, self.controller.begun), (GoalStatus.REJECTED, begun))
         self.assertIn("'post'", why)
@@ -148,12 +161,11 @@ class Gate(unittest.TestCase):
 
     def test_a_running_goal_is_cancelled_when_what_is_left_of_it_is_no_longer_clear(self):
         before = self.controller.cancelled
-        self.client.send_goal(Goal(trajectory=turning(2.0, 3.0)))
-        self.assertTrue(until(lambda: self.controller.server.is_active(), 5))
+        self.follow(turning(2.0, 3.0))
         self.server.apply(sphere('behind', 0.1, (0.5, -0.5, 0.5)))  # another scene, and nothing in the way
         time.sleep(0.4)
         self.assertEqual((self.controller.cancelled, self.refused), (before, []))
-        self.server.apply(sphere('post', 0.1, (0, 0.5, 0.5)))
+        self.server.apply(POST)
         begin = time.monotonic()
         state, _ = ends_of(self.client)
         self.assertLess(time.monotonic() - begin, 1.0)
@@ -166,7 +178,7 @@ class Gate(unittest.TestCase):
         self.client.send_goal(Goal(trajectory=turning(3.0, 3.0, parts=30)))
         time.sleep(2.4)  # by the clock the arm is past the post
         self.assertLess(self.arm.position(), 1.0)
-        self.server.apply(sphere('post', 0.1, (0, 0.5, 0.5)))
+        self.server.apply(POST)
         state, why = ends_of(self.client)
         self.assertEqual(state, GoalStatus.ABORTED)
         self.assertIn("'post'", why)
@@ -175,15 +187,14 @@ class Gate(unittest.TestCase):
     def test_what_a_robot_has_passed_stops_it_no_more(self):
         self.client.send_goal(Goal(trajectory=turning(3.0, 3.0, parts=30)))
         self.assertTrue(until(lambda: self.arm.position() > 2.4, 5))
-        self.server.apply(sphere('post', 0.1, (0, 0.5, 0.5)))
+        self.server.apply(POST)
         self.assertEqual(ends_of(self.client)[0], GoalStatus.SUCCEEDED)
 
     def test_a_robot_that_is_silent_or_elsewhere_is_stopped(self):
         for fault, word in (('silent', 'has not told where its joints are'), ('offset', "joint 'turn' at")):
             self.arm.rest()
             before = self.controller.cancelled
-            self.client.send_goal(Goal(trajectory=turning(2.0, 4.0)))
-            self.assertTrue(until(self.controller.server.is_active, 5))
+            self.follow(turning(2.0, 4.0))
             time.sleep(0.2)
             setattr(self.arm, fault, 0.5)
             state, why = ends_of(self.client, 3)
@@ -198,7 +209,7 @@ class Gate(unittest.TestCase):
         self.assertIn("joint 'turn' at 1 is", why)
 
     def test_the_way_to_a_first_point_that_is_not_at_time_zero_counts(self):
-        self.server.apply(sphere('post', 0.1, (0, 0.5, 0.5)))  # between the arm and the first point
+        self.server.apply(POST)  # between the arm and the first point
         state, why = self.sent(turning(3.0, 1.0, parts=4, first=3))
         self.assertEqual(state, GoalStatus.REJECTED)
         self.assertIn("'post'", why)
@@ -222,12 +233,9 @@ class Gate(unittest.TestCase):
 
     def test_a_long_question_keeps_no_running_goal_waiting(self):
         other = ActionClient('/gate/follow_joint_trajectory', Action)
-        self.assertTrue(other.wait_for_server(rospy.Duration(10)))
-        self.client.send_goal(Goal(trajectory=turning(2.0, 6.0)))
-        self.assertTrue(until(self.controller.server.is_active, 5))
-        ended = []
-        other.send_goal(Goal(trajectory=turning(0.5, 30.0, parts=30000)), done_cb=lambda *_: ended.append('asked'))
-        self.server.apply(sphere('post', 0.1, (0, 0.5, 0.5)))
+        self.follow(turning(2.0, 6.0))
+        other.send_goal(Goal(trajectory=turning(0.5, 30.0, parts=30000)))
+        self.server.apply(POST)
         self.assertEqual(ends_of(self.client)[0], GoalStatus.ABORTED)
         other.cancel_goal()
 
@@ -241,7 +249,6 @@ class Gate(unittest.TestCase):
     def test_the_goal_of_a_controller_that_goes_away_is_aborted(self):
         controller = Controller(self.arm, '/lost')
         client = ActionClient('/lost_gate/follow_joint_trajectory', Action)
-        self.assertTrue(client.wait_for_server(rospy.Duration(10)))
 
         def begins():  # the gate finds the controller in its own time
             client.send_goal(Goal(trajectory=turning(2.0, 20.0)))
@@ -253,15 +260,13 @@ class Gate(unittest.TestCase):
 
     def test_a_server_that_is_gone_or_hangs_ends_the_motion(self):
         client = ActionClient('/alone_gate/follow_joint_trajectory', Action)
-        self.assertTrue(client.wait_for_server(rospy.Duration(10)))
         for how, word in ((signal.SIGKILL, 'the server does not answer'), (signal.SIGSTOP, '~server_timeout')):
             self.arm.rest()
             node = Node('alone', fixed_frame='base')
             try:
-                Server('/alone').replace(sphere('far', 0.1, (0, 0, 5)))
+                Server('/alone').replace(FAR)
                 before = self.controller.cancelled
-                client.send_goal(Goal(trajectory=turning(2.0, 20.0)))
-                self.assertTrue(until(self.controller.server.is_active, 5), client.get_goal_status_text())
+                self.follow(turning(2.0, 20.0), client)
                 time.sleep(0.3)
                 node.process.send_signal(how)
                 state, why = ends_of(client)
@@ -280,8 +285,7 @@ class Gate(unittest.TestCase):
 
     def test_a_client_may_cancel(self):
         before = self.controller.cancelled
-        self.client.send_goal(Goal(trajectory=turning(1.0, 3.0)))
-        self.assertTrue(until(lambda: self.controller.server.is_active(), 5))
+        self.follow(turning(1.0, 3.0))
         self.client.cancel_goal()
         self.assertEqual((ends_of(self.client, 5)[0], self.controller.cancelled), (GoalStatus.PREEMPTED, before + 1))
 
@@ -292,10 +296,8 @@ class Gate(unittest.TestCase):
         ways = dict(path=lambda *turns: path((-1, 0, 3), (1, 0, 3), orientations=turns),
                     multi_dof_trajectory=lambda *turns: free_flight('drone', (-1, 0, 3), (1, 0, 3), orientations=turns))
         for name, way in ways.items():
-            passed, refused, kind = [], [], type(way())
-            topic = rospy.Publisher('/plank_gate/' + name, kind, queue_size=5)
-            out = [rospy.Subscriber('/plank_gate/clear_' + name, kind, passed.append), rospy.Subscriber('/plank_gate/refused', Refusal, refused.append)]
-            self.assertTrue(connected(topic, *out))
+            topic = self.publisher('/plank_gate/' + name, type(way()))
+            passed, refused = heard('/plank_gate/clear_' + name, type(way())), heard('/plank_gate/refused', Refusal)
             for turns in (False, True):
                 del passed[:], refused[:]
                 topic.publish(way(turned(0), turned(math.radians(90) if turns else 0)))
@@ -303,11 +305,9 @@ class Gate(unittest.TestCase):
                 self.assertEqual((len(passed), [(r.row.a, r.row.b) for r in refused]), (0, [('plank', 'post')]) if turns else (1, []), (name, turns))
                 if turns:
                     self.assertEqual((refused[0].source, refused[0].row.kind), (name, 'movers'))
-            for subscriber in out:
-                subscriber.unregister()
 
     def test_refused_messages_of_topics_are_told_too(self):
-        self.server.apply(sphere('post', 0.1, (0, 0.5, 0.5)))
+        self.server.apply(POST)
         self.topic.publish(turning(3.0, 2.0))
         self.assertTrue(until(lambda: self.refused, 5))
         self.assertEqual((self.refused[0].source, self.refused[0].row.b), ('trajectory', 'post'))
@@ -322,7 +322,7 @@ class Gate(unittest.TestCase):
         self.server.apply(sphere('behind', 0.1, (0.5, -0.5, 0.5)))  # another scene, and nothing in the way
         time.sleep(0.4)
         self.assertEqual((len(self.passed), self.refused), (1, []))
-        self.server.apply(sphere('post', 0.1, (0, 0.5, 0.5)))
+        self.server.apply(POST)
         begin = time.monotonic()
         self.assertTrue(until(lambda: len(self.passed) == 2 and self.refused, 5))
         self.assertLess(time.monotonic() - begin, 1.0)
@@ -340,18 +340,15 @@ class Gate(unittest.TestCase):
         self.topic.publish(turning(2.0, 30.0))
         self.topic.publish(turning(0.5, 30.0))  # the post is not in the way of this one
         self.assertTrue(until(lambda: len(self.passed) == 3, 5))
-        self.server.apply(sphere('post', 0.1, (0, 0.5, 0.5)))
+        self.server.apply(POST)
         time.sleep(0.4)
         self.assertEqual((len(self.passed), self.refused), (3, []))
 
     def test_a_trajectory_is_stopped_when_data_becomes_too_old(self):
-        passed, refused = [], []
-        topics = [rospy.Subscriber('/aging_gate/clear_trajectory', JointTrajectory, passed.append),
-                  rospy.Subscriber('/aging_gate/refused', Refusal, refused.append)]
-        out = rospy.Publisher('/aging/trajectory', JointTrajectory, queue_size=5)
-        states = rospy.Publisher('/aging/joint_states', JointState, queue_size=5)
-        self.assertTrue(connected(*topics, out, states))
-        Server('/aging').replace(sphere('far', 0.1, (0, 0, 5)))
+        passed, refused = heard('/aging_gate/clear_trajectory', JointTrajectory), heard('/aging_gate/refused', Refusal)
+        out = self.publisher('/aging/trajectory', JointTrajectory)
+        states = self.publisher('/aging/joint_states', JointState)
+        Server('/aging').replace(FAR)
 
         def ask():  # the first joint states may come after the question
             states.publish(joints(turn=0.0))
@@ -362,8 +359,6 @@ class Gate(unittest.TestCase):
         del refused[:]
         self.assertTrue(until(lambda: refused and len(passed) == 2, 5))
         self.assertEqual((refused[0].cancelled, refused[0].row.status, passed[1].points), (True, Proximity.STATUS_STALE, []))
-        for topic in topics:
-            topic.unregister()
 
 
 if __name__ == '__main__':

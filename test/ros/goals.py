@@ -8,15 +8,13 @@ import os
 import random
 import tempfile
 import time
-import unittest
 
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from curve_proximity.msg import CollisionObject
-from gate import Action, Arm, Controller, Goal, turning
-from helpers import ActionClient, Node, Server, connected, run, sphere, thing, until
+from gate import ArmCase, Goal, turning
+from helpers import Node, Server, connected, run, sphere, thing, until
 from histories import AWAY, LIMIT, RADIUS, REACHES, World, robot, write_scene
-from sensor_msgs.msg import JointState
 
 REACTION = 1.0  # [s] a gate on a busy machine stops the arm within this time
 SILENCE = 2.5   # [s] the same where roscpp waits for the answer of a server that has died: ~server_timeout, and some
@@ -28,17 +26,12 @@ def on_arm(turn, reach):
     return (reach * math.cos(turn), reach * math.sin(turn), 0.5)
 
 
-class Goals(unittest.TestCase):
+class Goals(ArmCase):
     @classmethod
     def setUpClass(cls):
-        cls.states = rospy.Publisher('/curve_proximity/joint_states', JointState, queue_size=5)
+        super().setUpClass()
         cls.objects = rospy.Publisher('/curve_proximity/collision_object', CollisionObject, queue_size=5)
         cls.folder, cls.node = tempfile.mkdtemp(), None
-        cls.arm = Arm(cls.states)
-        cls.controller = Controller(cls.arm)
-        cls.client = ActionClient('/gate/follow_joint_trajectory', Action)
-        assert cls.client.wait_for_server(rospy.Duration(20))
-        time.sleep(1.0)  # the gate finds the controller
 
     @classmethod
     def tearDownClass(cls):
@@ -143,19 +136,19 @@ class Goals(unittest.TestCase):
         story.append('%s at %.2f of %.2f, speed %.1f, %s: %s' % (
             state, self.arm.position(), end, self.arm.speed, self.client.get_goal_status_text(), self.world.objects))
         reached = state == GoalStatus.SUCCEEDED
-        self.succeeded += reached
+        self.arrived += reached
         self.ended += not reached
         return finished and (may_pass and not must_end if reached else may_end), story
 
     def test_no_goal_goes_where_it_is_not_clear_and_clear_ones_arrive(self):
         first, n = rospy.get_param('~seed', 0), rospy.get_param('~goals', 6)
-        self.succeeded = self.ended = 0
+        self.arrived = self.ended = 0
         self.world = World()
         for seed in range(first, first + n):
             with self.subTest(seed=seed):
                 right, story = self.play(seed)
                 self.assertTrue(right, 'seed %d:\n%s' % (seed, '\n'.join(story)))
-        self.assertGreater(min(self.succeeded, self.ended), n // 10)
+        self.assertGreater(min(self.arrived, self.ended), n // 10)
 
 
 if __name__ == '__main__':

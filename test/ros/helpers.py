@@ -9,6 +9,7 @@ import socket
 import struct
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 import unittest
@@ -25,6 +26,7 @@ from curve_proximity.srv import (ApplyScene, ApplySceneRequest, Collision, Colli
                                  DistanceRequest, GetScene, Tolerance, ToleranceRequest)
 from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion, Transform, TransformStamped, Vector3
 from nav_msgs.msg import Path
+from rosgraph.network import parse_http_host_and_port as host_and_port  # of services, too
 from sensor_msgs.msg import JointState, PointCloud2, PointField
 from shape_msgs.msg import Mesh, MeshTriangle, Plane, SolidPrimitive
 from std_msgs.msg import Header
@@ -36,15 +38,16 @@ sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '
 from free_port import free_port  # noqa: E402,F401 (for the tests that start masters)
 
 BOX, SPHERE, CYLINDER, CONE = 1, 2, 3, 4
-_NODES = itertools.count()
 
 
 class ActionClient(actionlib.SimpleActionClient):
-    """What comes of a goal while send_goal() works waits until it is done. actionlib drops it, and the goal never ends."""
+    """A client whose server is there. What comes of a goal while send_goal() works waits until it is done. actionlib drops it, and the
+    goal never ends."""
 
     def __init__(self, name, action):
         self.sending = threading.RLock()
         super().__init__(name, action)
+        assert self.wait_for_server(rospy.Duration(20)), 'there is no action ' + name
 
     def send_goal(self, *arguments, **options):
         with self.sending:
@@ -290,10 +293,10 @@ class RawClient:
     """A connection to a service that sends bytes."""
 
     def __init__(self, service, kind, seconds=60):
-        address = rosgraph.Master('/test').lookupService(service).split('//')[1].split(':')
+        address = host_and_port(rosgraph.Master('/test').lookupService(service))
         self.kind = kind
         for more in (2, 1, 0):
-            self.connection = socket.create_connection((address[0], int(address[1])), 20)
+            self.connection = socket.create_connection(address, 20)
             self.connection.settimeout(15)
             self.connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             self.connection.sendall(handshake(service=service, md5sum=kind._md5sum))
@@ -396,7 +399,7 @@ class Node:
         for parameter, value in dict({'state_file': '', 'max_age': 0.0}, **parameters).items():  # what a test sends stays fresh
             if environment is None and value is not None:
                 rospy.set_param('/%s/%s' % (name, parameter), value)
-        self._log = open(os.path.join('/tmp', 'curve_proximity_%s_%d_%d.log' % (name, os.getpid(), next(_NODES))), 'w+')
+        self._log = tempfile.NamedTemporaryFile(prefix='curve_proximity_%s_' % name, suffix='.log')
         self.process = subprocess.Popen(arguments, stdout=self._log, stderr=subprocess.STDOUT, env=environment)
 
     def forget(self):
@@ -410,7 +413,6 @@ class Node:
         return self.process.poll() is None
 
     def output(self):
-        self._log.flush()
         with open(self._log.name) as log:
             return log.read()
 
@@ -435,7 +437,6 @@ class Node:
                 self.process.kill()
                 self.process.wait()
         self._log.close()
-        os.unlink(self._log.name)
         self.forget()
         if code:
             raise AssertionError('%s ended with code %d: %s' % (self.name, code, said[-2000:]))
@@ -450,6 +451,11 @@ class Case(unittest.TestCase):
         self.addCleanup(node.end)
         return node, Server('/' + name)
 
+    def set_param(self, name, value):
+        """Until the test ends."""
+        rospy.set_param(name, value)
+        self.addCleanup(lambda: rospy.has_param(name) and rospy.delete_param(name))
+
     def publisher(self, topic, kind, **fields):
         publisher = rospy.Publisher(topic, kind, **dict(dict(queue_size=5), **fields))
         self.assertTrue(connected(publisher))
@@ -458,6 +464,18 @@ class Case(unittest.TestCase):
     def succeeded(self, response):
         self.assertTrue(response.success, response.message)
         return response
+
+    def stopped(self, **parameters):
+        """What a node said that ended by itself, with a failure, since it could not use these parameters."""
+        node = Node('wrong', **parameters)
+        try:
+            code = node.wait(20)
+            output = node.output()
+        finally:
+            node.end()
+        self.assertNotIn(code, (None, 0), output)
+        self.assertGreater(code, 0, 'the node died of a signal: ' + output)
+        return output
 
     def row(self, response):
         """The one result of a call that succeeded."""
@@ -512,6 +530,13 @@ def bus_links(node, topic, direction):
     with xmlrpc.client.ServerProxy(rosgraph.Master(rospy.get_name()).lookupNode(node)) as api:
         connections = api.getBusInfo(rospy.get_name())[2]
     return [link[-1] for link in connections if (link[2], link[4]) == (direction, topic)]
+
+
+def heard(topic, kind):
+    """The messages of a topic from now on, as they come."""
+    messages = []
+    assert connected(rospy.Subscriber(topic, kind, messages.append)), 'nobody publishes ' + topic
+    return messages
 
 
 class Drawings:
@@ -569,16 +594,3 @@ def status_of(seen, name, condition, seconds=8):
     found = until(look, seconds)
     assert found, 'no such status: ' + str(seen[-1:])
     return found
-
-
-def refusal(test, name, **parameters):
-    """What a node said that ended by itself, with a failure, since it could not use these parameters."""
-    node = Node(name, **parameters)
-    try:
-        code = node.wait(20)
-        output = node.output()
-    finally:
-        node.end()
-    test.assertNotIn(code, (None, 0), output)
-    test.assertGreater(code, 0, 'the node died of a signal: ' + output)
-    return output

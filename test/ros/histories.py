@@ -9,11 +9,10 @@ import random
 import signal
 import tempfile
 import time
-import unittest
 
 import rospy
 from curve_proximity.msg import CollisionObject
-from helpers import Node, Server, connected, joint_trajectory, joints, run, sphere, thing, until
+from helpers import Case, Node, Server, connected, joint_trajectory, joints, run, sphere, thing, until
 from known import ARM, seen, written
 from sensor_msgs.msg import JointState, PointCloud2
 
@@ -74,10 +73,8 @@ class World:
         return self.expected(on_way, known), self.expected(self.distance(self.turn), known and self.told)
 
 
-class Histories(unittest.TestCase):
+class Histories(Case):
     def setUp(self):
-        rospy.set_param('/robot_description', robot(REACHES[0]))
-        self.addCleanup(rospy.delete_param, '/robot_description')
         self.parameters = dict(max_age=MAX_AGE, tf_timeout=0.02, fixed_frame='base', expected_sensors=['cloud'])
         self.files()
         self.node, self.world, self.story = None, World(), []
@@ -93,7 +90,7 @@ class Histories(unittest.TestCase):
         self.parameters.update(state_file=folder + '/kept.scene', scene_file=folder + '/scene.yaml')
         self.launched = REACHES[0], None
         write_scene(self.parameters['scene_file'], None)
-        rospy.set_param('/robot_description', robot(REACHES[0]))
+        self.set_param('/robot_description', robot(REACHES[0]))
 
     def start(self, **more):
         self.node = Node(NAME, **self.parameters, **more)

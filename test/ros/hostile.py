@@ -12,7 +12,7 @@ import unittest
 import rosgraph
 from curve_proximity.msg import ProximityQuery
 from curve_proximity.srv import Distance, DistanceRequest
-from helpers import Node, Server, bezier, framed, handshake, header, run, serialized, sphere
+from helpers import Node, Server, bezier, framed, handshake, header, host_and_port, run, serialized, sphere
 
 CONNECTIONS = int(os.environ.get('CURVE_PROXIMITY_HOSTILE', 300))
 MEMORY_MB = 2048
@@ -36,8 +36,11 @@ def post(body, length=None, path='/RPC2'):
 class Attacker:
     """Makes connections of all kinds; keeps some open and never reads from them."""
 
-    def __init__(self, service, api):
-        self.random, self.service, self.api, self.open = random.Random(SEED), service, api, []
+    def __init__(self, seed):
+        master = rosgraph.Master('/hostile')
+        self.service = host_and_port(master.lookupService('/hostile_target/distance'))
+        self.api = host_and_port(master.lookupNode('/hostile_target'))
+        self.random, self.open = random.Random(seed), []
 
     def bytes(self, most):
         return bytes(self.random.getrandbits(8) for _ in range(self.random.randrange(1, most)))
@@ -95,10 +98,7 @@ class Hostile(unittest.TestCase):
         self.addCleanup(self.node.end)
         self.server = Server('/hostile_target')
         self.server.replace(sphere('ball', 0.25))
-        master = rosgraph.Master('/hostile')
-        service = master.lookupService('/hostile_target/distance').split('//')[1].split(':')
-        api = master.lookupNode('/hostile_target').split('//')[1].strip('/').split(':')
-        self.attacker = Attacker((service[0], int(service[1])), (api[0], int(api[1])))
+        self.attacker = Attacker(SEED)
 
     def assertAnswers(self, after):
         self.assertTrue(self.node.alive(), 'the node died after %s: %s' % (after, self.node.output()[-2000:]))

@@ -4,20 +4,19 @@
 import struct
 import threading
 import time
-import unittest
 from xmlrpc.client import ServerProxy
 
 import rosgraph
 import rospy
 from curve_proximity.msg import Curve
 from curve_proximity.srv import ApplyScene, Distance, Tolerance, ToleranceResponse
-from helpers import Call, Server, bezier, connected, raw_call, request_of_points, resident_mb, ring_and_shells, run, sphere
+from helpers import Call, Case, Server, bezier, raw_call, request_of_points, resident_mb, ring_and_shells, run, sphere
 from nodelet.srv import NodeletList, NodeletLoad, NodeletUnload
 
 LINE = bezier((-1, 0, 1), (1, 0, 1))
 
 
-class Nodelet(unittest.TestCase):
+class Nodelet(Case):
     @classmethod
     def setUpClass(cls):
         rospy.wait_for_service('/manager/load_nodelet', 20)
@@ -26,16 +25,13 @@ class Nodelet(unittest.TestCase):
         cls.list_nodelets = rospy.ServiceProxy('/manager/list', NodeletList)
 
     def load(self, name):
-        response = self.load_nodelet(name, 'curve_proximity/ProximityServer', [], [], [], '')
-        self.assertTrue(response.success)
+        self.assertTrue(self.load_nodelet(name, 'curve_proximity/ProximityServer', [], [], [], '').success)
         return Server(name)
 
     def test_it_answers_in_a_manager(self):
         server = self.load('/answering')
         server.replace(sphere('ball', 0.25))
-        response = server.distance(LINE)
-        self.assertTrue(response.success, response.message)
-        self.assertAlmostEqual(response.results[0].upper, 0.75, delta=2e-6)
+        self.assertAlmostEqual(self.row(server.distance(LINE)).upper, 0.75, delta=2e-6)
         self.assertTrue(self.unload_nodelet('/answering').success)
         self.assertEqual(self.list_nodelets().nodelets, [])
 
@@ -65,8 +61,7 @@ class Nodelet(unittest.TestCase):
     def test_what_a_request_takes_is_bounded_in_a_manager_too(self):
         """Without an account of all allocations: by what requests are going to take, and by the bytes that a count needs."""
         pid = ServerProxy(rosgraph.Master('/test').lookupNode('/manager')).getPid('/test')[2]
-        rospy.set_param('/bounded/memory_limit_mb', 300)
-        self.addCleanup(rospy.delete_param, '/bounded')
+        self.set_param('/bounded', dict(memory_limit_mb=300))
         server = self.load('/bounded')
         server.replace(sphere('ball', 0.25), *[sphere('ball%d' % i, 0.1, (i, 0, -5)) for i in range(400)])
         before = resident_mb(pid)
@@ -86,13 +81,10 @@ class Nodelet(unittest.TestCase):
     def test_a_wrong_parameter_fails_the_load_and_nothing_else(self):
         for kind, name, value in (('ProximityServer', 'epsilon', 'small'), ('TrajectoryGate', 'delta', -1.0), ('TrajectoryGate', 'delta', 'wide'),
                                   ('TrajectoryGate', 'queue_size', 0)):
-            rospy.set_param('/wrong/' + name, value)
-            try:
-                with self.assertRaises(rospy.ServiceException):
-                    if not self.load_nodelet('/wrong', 'curve_proximity/' + kind, [], [], [], '').success:
-                        raise rospy.ServiceException('refused')
-            finally:
-                rospy.delete_param('/wrong')
+            self.set_param('/wrong', {name: value})
+            with self.assertRaises(rospy.ServiceException):
+                if not self.load_nodelet('/wrong', 'curve_proximity/' + kind, [], [], [], '').success:
+                    raise rospy.ServiceException('refused')
         self.assertEqual(self.list_nodelets().nodelets, [])
 
     def test_a_gate_whose_server_hangs_is_unloaded_all_the_same(self):
@@ -105,12 +97,9 @@ class Nodelet(unittest.TestCase):
         service = rospy.Service('/hung/tolerance', Tolerance, hang)
         self.addCleanup(service.shutdown)
         self.addCleanup(ending.set)
-        rospy.set_param('/hung_gate/server', '/hung')
-        self.addCleanup(rospy.delete_param, '/hung_gate')
+        self.set_param('/hung_gate', dict(server='/hung'))
         self.assertTrue(self.load_nodelet('/hung_gate', 'curve_proximity/TrajectoryGate', [], [], [], '').success)
-        curves = rospy.Publisher('/hung_gate/curve', Curve, queue_size=1)
-        self.assertTrue(connected(curves))
-        curves.publish(LINE)
+        self.publisher('/hung_gate/curve', Curve).publish(LINE)
         self.assertTrue(asked.wait(10))
         begin = time.monotonic()
         self.assertTrue(self.unload_nodelet('/hung_gate').success)

@@ -1,31 +1,26 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Nodelet managers that end while queries run."""
-import os
 import signal
 import subprocess
+import tempfile
 import time
 
-import rospy
 from actionlib_msgs.msg import GoalStatus
 from curve_proximity.msg import Curve, QueryAction, QueryGoal
-from helpers import ActionClient, Call, Case, Server, bezier, connected, executable, query, ring_and_shells, run, until
-
-LOG = '/tmp/curve_proximity_manager_%d.log' % os.getpid()
+from helpers import ActionClient, Call, Case, Server, bezier, executable, query, ring_and_shells, run, until
 
 
 class Managers(Case):
     def start(self, *arguments):
         """A program whose output is kept."""
-        log = open(LOG, 'a')
-        self.addCleanup(log.close)
-        process = subprocess.Popen(arguments, stdout=log, stderr=subprocess.STDOUT)
+        process = subprocess.Popen(arguments, stdout=self.log, stderr=subprocess.STDOUT)
         self.addCleanup(lambda: (process.poll() is None and process.kill(), process.wait()))
         return process
 
     def setUp(self):
-        open(LOG, 'w').close()
-        self.addCleanup(os.unlink, LOG)
+        self.log = tempfile.NamedTemporaryFile()
+        self.addCleanup(self.log.close)
 
     def manager(self):
         """A manager with a server and a gate."""
@@ -36,7 +31,7 @@ class Managers(Case):
         return manager
 
     def output(self):
-        with open(LOG) as log:
+        with open(self.log.name) as log:
             return log.read()
 
     def test_a_manager_that_is_stopped_while_queries_run_ends_without_a_crash(self):
@@ -48,10 +43,8 @@ class Managers(Case):
         # a service, the topic and the action, all at work
         call = Call(lambda: server.distance(ring, **fields))
         client = ActionClient('/stopped_server/query', QueryAction)
-        self.assertTrue(client.wait_for_server(rospy.Duration(10)))
         client.send_goal(QueryGoal(query_type='distance', query=query([ring] * 100, **fields)))
-        topic = rospy.Publisher('/stopped_server/curve', Curve, queue_size=100)
-        self.assertTrue(connected(topic))
+        topic = self.publisher('/stopped_server/curve', Curve, queue_size=100)
         for i in range(50):
             topic.publish(bezier((0, 0, 1), (1, 0, 1)))
             topic.publish(Curve(basis='bspline', degree=3, points=ring.points, knots=ring.knots))

@@ -8,7 +8,7 @@ import rospy
 from curve_proximity.msg import AttachedCollisionObject, Body, CollisionObject, LinkPadding, ProximityResults, RobotTrajectory
 from curve_proximity.srv import (ClearanceProfile, ClearanceProfileRequest, ListViolations, ListViolationsRequest, NearestPairs,
                                  NearestPairsRequest)
-from helpers import (Case, Drawings, Server, bezier, box, connected, free_flight, joint_trajectory, joints, moving, path, pose, query, run,
+from helpers import (Case, Drawings, Server, bezier, box, free_flight, heard, joint_trajectory, joints, moving, path, pose, query, run,
                      service, sphere, turned, until, waypoint)
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from visualization_msgs.msg import Marker
@@ -179,21 +179,16 @@ class Movers(Case):
 
     def test_a_body_rides_what_comes_by_topic(self):
         """~path_body, a ball of .1 that is .5 above its origin: upside down along a path, and while it turns over on the spot."""
-        received = []
-        results = rospy.Subscriber('/curve_proximity/proximity', ProximityResults, received.append)
-        self.addCleanup(results.unregister)
+        received = heard('/curve_proximity/proximity', ProximityResults)
         self.server.replace(sphere('ball', 0.25, (0, 3, 3)))
         way = path((-1, 3, 4), (1, 3, 4), frame='world', orientations=[(1, 0, 0, 0)] * 2)
         flight = free_flight('drone', (0, 3, 4), (0, 3, 4), orientations=[turned(math.radians(angle), (1, 0, 0)) for angle in (100, 240)])
         for topic, message, name in (('path', way, 'path'), ('multi_dof_trajectory', flight, 'drone')):
-            publisher = rospy.Publisher('/curve_proximity/' + topic, type(message), queue_size=1)
-            self.assertTrue(connected(publisher, results))
             del received[:]
-            publisher.publish(message)
+            self.publisher('/curve_proximity/' + topic, type(message)).publish(message)
             self.assertTrue(until(lambda: received, 10))
             row = self.assertDistance(received[0], 'lamp', 1 - 0.5 - 0.1 - 0.25)
             self.assertEqual((row.kind, row.id), ('movers', name))
-            publisher.unregister()
             field = 'paths' if topic == 'path' else 'multi_dof_trajectories'
             self.assertDistance(self.server.distance([], **{field: [message]}), 'lamp', 1 - 0.5 - 0.1 - 0.25)
 

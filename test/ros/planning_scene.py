@@ -11,7 +11,7 @@ import rospy
 from curve_proximity.msg import AllowedContact, AttachedCollisionObject, LinkPadding, LinkScale, ProximityResults
 from diagnostic_msgs.msg import DiagnosticArray
 from foreign_types import GetPlanningScene, GetPlanningSceneResponse, moveit
-from helpers import Node, Server, bezier, box, bus_links, connected, joint_trajectory, joints, mesh, pose, run, sphere, transform, until
+from helpers import Node, Server, bezier, box, bus_links, connected, heard, joint_trajectory, joints, mesh, pose, run, sphere, transform, until
 from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import JointState
 
@@ -318,9 +318,7 @@ class PlanningScene(unittest.TestCase):
             shown.trajectory.append(moveit.RobotTrajectory(joint_trajectory=copy.deepcopy(way)))
         shown.trajectory[0].joint_trajectory.header.stamp = stamp
         shown.trajectory_start.joint_state = JointState(name=['turn'], position=[0.0])
-        contacts = []
-        reader = rospy.Subscriber(NODE + '/contacts', moveit.ContactInformation, contacts.append)
-        self.assertTrue(connected(reader))
+        contacts = heard(NODE + '/contacts', moveit.ContactInformation)
         answer = self.ask('display_trajectory', shown, stamp)
         self.assertTrue(answer.success, answer.message)
         self.assertSameRows(answer.results, asked[0] + asked[1])
@@ -334,7 +332,6 @@ class PlanningScene(unittest.TestCase):
         self.assertEqual((contact.body_type_1, contact.body_type_2), (0 if contact.contact_body_1 == 'arm' else 2, 1))
         self.assertEqual(contact.header.frame_id, 'world')
         self.assertGreaterEqual(contact.depth, -1e-6)
-        reader.unregister()
 
         # from a state that carries what the scene does not know: nothing is clear
         shown.trajectory_start.attached_collision_objects = [attached('arm', foreign(sphere('pen', .1), frame='arm'))]

@@ -13,7 +13,7 @@ import rospy
 from curve_proximity.msg import Clearance, Curve
 from curve_proximity.srv import (ClearanceProfile, ClearanceProfileRequest, ListViolations, ListViolationsRequest,
                                  NearestPairs, NearestPairsRequest, TimeOfContact, TimeOfContactRequest)
-from helpers import Case, Server, bezier, bspline, connected, joint_trajectory, query, run, service, sphere, until
+from helpers import Case, Server, bezier, bspline, heard, joint_trajectory, query, run, service, sphere, until
 from trajectory_msgs.msg import JointTrajectory
 
 URDF = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'data', 'arm.urdf')
@@ -168,11 +168,9 @@ class Questions(Case):
         self.assertEqual(self.server.distance(bezier(*LINE), objects=['ball']).gradients, [])
 
     def test_a_profile_comes_as_numbers_that_a_plotter_draws(self):
-        told = {name: [] for name in ('environment', 'self', 'environment/arm', 'environment/slider', 'self/arm', 'self/slider', 'curve')}
-        subscribers = [rospy.Subscriber('/curve_proximity/clearance/' + name, Clearance, messages.append) for name, messages in told.items()]
-        motions = rospy.Publisher('/curve_proximity/trajectory', JointTrajectory, queue_size=5)
-        curves = rospy.Publisher('/curve_proximity/curve', Curve, queue_size=5)
-        self.assertTrue(connected(*subscribers, motions, curves))
+        names = 'environment', 'self', 'environment/arm', 'environment/slider', 'self/arm', 'self/slider', 'curve'
+        told = {name: heard('/curve_proximity/clearance/' + name, Clearance) for name in names}
+        motions, curves = (self.publisher('/curve_proximity/' + name, kind) for name, kind in (('trajectory', JointTrajectory), ('curve', Curve)))
         moved = copy.deepcopy(QUARTER)
         moved.header.stamp = rospy.Time(1000, 500000000)
         motions.publish(moved)
@@ -186,8 +184,6 @@ class Questions(Case):
                                  ('trajectory', BREAKS[(i + 1) // 2], *[expected[name][i // 2] for name in ('lower', 'upper', 'a', 'b')]))
                 self.assertAlmostEqual(message.header.stamp.to_sec(), 1000.5 + message.t, delta=1e-6)
         self.assertGreater(told['curve'][0].header.stamp, rospy.Time(1001))  # the curve has no stamp: when it came
-        for subscriber in subscribers:
-            subscriber.unregister()
 
     def test_what_cannot_be_answered_is_refused_in_one_line(self):
         for request, fields, *words in (

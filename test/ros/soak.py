@@ -12,7 +12,6 @@ import sys
 import threading
 import time
 
-import rosgraph
 import rospy
 from curve_proximity.msg import ProximityQuery
 from curve_proximity.srv import ApplyScene, Distance, DistanceRequest
@@ -91,11 +90,7 @@ def honest(seed, end, report, n_clients, n_curves):
 
 def malformed(seed, end, report):
     """A process that makes connections of all kinds that hostile.py knows."""
-    master = rosgraph.Master('/soak')
-    service = master.lookupService('/%s/distance' % NODE).split('//')[1].split(':')
-    api = master.lookupNode('/' + NODE).split('//')[1].strip('/').split(':')
-    attacker = Attacker((service[0], int(service[1])), (api[0], int(api[1])))
-    attacker.random = random.Random(seed)
+    attacker = Attacker(seed)
     kinds = attacker.kinds()
     made, next_report = 0, 0.0
     while time.monotonic() < end:

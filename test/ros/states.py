@@ -7,7 +7,7 @@ import time
 
 import rospy
 from curve_proximity.msg import (AllowedContact, AttachedCollisionObject, Body, CollisionObject, Octree, Proximity, ProximityResults)
-from helpers import Case, Node, Server, bezier, connected, joint_trajectory, joints, run, sphere, thing, until
+from helpers import Case, Node, Server, bezier, connected, heard, joint_trajectory, joints, run, sphere, thing, until
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
 
@@ -77,14 +77,13 @@ class States(Case):
 
     def test_the_current_joint_states_are_a_state_too_and_are_watched(self):
         self.server.replace(sphere('ball', 0.2, (2, 1, 0)))
-        results = []
-        rospy.Subscriber('/chain/state_proximity', ProximityResults, results.append)
         self.states.publish(joints(one=0.0, two=0.0))
 
         def upper():  # NaN until the first joint states have come
             response = self.server.distance([], robot_state=True)
             return response.results[0].upper if response.success else math.nan
         self.assertTrue(until(lambda: abs(upper() - 0.7) < 1e-5, 20))
+        results = heard('/chain/state_proximity', ProximityResults)
         self.assertTrue(until(lambda: results and results[-1].source == 'state' and abs(results[-1].results[0].upper - 0.7) < 1e-5, 20))
         self.assertEqual([row.kind for row in results[-1].results], ['environment', 'self'])
         self.states.publish(joints(two=math.pi / 2))  # lower's ball goes to (1, 1, 0)

@@ -7,22 +7,18 @@ import random
 import struct
 import threading
 import time
-import unittest
 
 import rospy
 from actionlib_msgs.msg import GoalStatus
-from curve_proximity.msg import AllowedContact, CollisionObject, Refusal
+from curve_proximity.msg import AllowedContact, CollisionObject, Curve, Refusal
 from curve_proximity.srv import Tolerance, ToleranceResponse
-from gate import Action, Arm, Controller, Goal, ends_of, turning
-from helpers import ActionClient, Server, bezier, box, connected, mesh, run, sphere, transform, until
-from sensor_msgs.msg import JointState
+from gate import FAR, POST, ArmCase, Goal, ends_of, turning
+from helpers import Server, bezier, box, connected, heard, mesh, run, sphere, transform, until
 from tf2_msgs.msg import TFMessage
 from trajectory_msgs.msg import JointTrajectory
 
 APART, NEAR = 1, 2
 DELTA = 0.05
-POST = sphere('post', 0.1, (0, 0.5, 0.5))  # where the arm is after a quarter turn
-FAR = sphere('far', 0.1, (0, 0, 5))
 CLAIM, LIMIT = 16, 8  # where the head of a certificate has its claim and its limit
 
 
@@ -66,20 +62,17 @@ def put(at, form, value):
     return lambda proof: proof[:at] + struct.pack(form, value) + proof[at + struct.calcsize(form):]
 
 
-class Verified(unittest.TestCase):
+class Verified(ArmCase):
+    STATES = '/joint_states'
+
     @classmethod
     def setUpClass(cls):
-        cls.states = rospy.Publisher('/joint_states', JointState, queue_size=5)
-        cls.arm = Arm(cls.states)
         cls.liar = Liar()
-        cls.controller, cls.refused = Controller(cls.arm), []
+        super().setUpClass()
         cls.reading, cls.server, cls.other, cls.stranger = (
             Server(name) for name in ('/gate/reading', '/curve_proximity', '/other', '/stranger'))
-        cls.heard = rospy.Subscriber('/gate/refused', Refusal, cls.refused.append)
-        cls.client = ActionClient('/gate/follow_joint_trajectory', Action)
-        assert cls.client.wait_for_server(rospy.Duration(20))
-        assert connected(cls.states, cls.heard)
-        time.sleep(1.0)  # the gate finds the controller
+        cls.refused = heard('/gate/refused', Refusal)
+        assert connected(cls.states)
 
     def setUp(self):
         self.arm.rest()
@@ -238,8 +231,7 @@ class Verified(unittest.TestCase):
         kept = []
         self.liar.lie = lambda request: kept.append(self.liar.honest(request)) or clear(copy.deepcopy(kept[0]))
         self.liar.frozen = self.server.scene().scene.version
-        self.client.send_goal(Goal(trajectory=turning(2.0, 20.0)))
-        self.assertTrue(until(self.controller.server.is_active, 5), self.client.get_goal_status_text())
+        self.follow(turning(2.0, 20.0))
         self.reading.apply(POST)  # it alone has heard of it
         begin = time.monotonic()
         state, why = ends_of(self.client)
@@ -248,16 +240,13 @@ class Verified(unittest.TestCase):
         self.assertLess(time.monotonic() - begin, 5.0)
 
     def test_an_object_that_the_gate_cannot_use_lets_nothing_pass(self):
-        broken = rospy.Publisher('/gate/reading/collision_object', CollisionObject, queue_size=5)
-        self.assertTrue(connected(broken))
+        broken = self.publisher('/gate/reading/collision_object', CollisionObject)
         broken.publish(sphere('broken', -1.0, (9, 9, 9)))
         self.assertTrue(until(lambda: "object 'broken' is not used" in self.send()[1], 5))
         self.assertEqual(self.send()[0], GoalStatus.REJECTED)
 
     def test_no_trajectory_passes_after_a_stop_that_came_later(self):
-        topic, passed = rospy.Publisher('/gate/trajectory', JointTrajectory, queue_size=5), []
-        heard = rospy.Subscriber('/gate/clear_trajectory', JointTrajectory, passed.append)
-        self.assertTrue(connected(topic, heard))
+        topic, passed = self.publisher('/gate/trajectory', JointTrajectory), heard('/gate/clear_trajectory', JointTrajectory)
         del self.refused[:]
         asked, going_on = self.liar.asked, threading.Event()
         self.liar.lie = lambda request: going_on.wait(10) and self.liar.honest(request)
@@ -271,15 +260,11 @@ class Verified(unittest.TestCase):
         self.assertEqual(([len(one.points) for one in passed], {one.message for one in self.refused}), ([0], {'a stop came after it'}))
         topic.publish(turning(1.0, 2.0))
         self.assertTrue(until(lambda: len(passed) == 2, 5), [one.message for one in self.refused])
-        heard.unregister()
 
     def test_curves_are_proven_too(self):
-        links = rospy.Publisher('/tf_static', TFMessage, queue_size=5, latch=True)  # curves meet the robot where tf2 has it
+        links = self.publisher('/tf_static', TFMessage, latch=True)  # curves meet the robot where tf2 has it
         links.publish(TFMessage([transform('base', link) for link in ('arm', 'slider')]))
-        topic = rospy.Publisher('/gate/curve', type(bezier((0, 0, 0))), queue_size=5)
-        passed, heard = [], None
-        heard = rospy.Subscriber('/gate/clear_curve', type(bezier((0, 0, 0))), passed.append)
-        self.assertTrue(connected(links, topic, heard))
+        topic, passed = self.publisher('/gate/curve', Curve), heard('/gate/clear_curve', Curve)
         curve = bezier((-1, 0.5, 2), (0, 0.7, 2), (1, 0.5, 2), id='c', radius=0.1)
         self.assertTrue(until(lambda: all(server.distance(curve).success for server in (self.reading, self.server)), 5))
         for blocked, lie in ((False, None), (True, None), (True, self.asking())):
@@ -290,7 +275,6 @@ class Verified(unittest.TestCase):
             topic.publish(curve)
             self.assertTrue(until(lambda: passed or self.refused, 5))
             self.assertEqual((len(passed), len(self.refused)), (0, 1) if blocked else (1, 0), [r.message for r in self.refused])
-        heard.unregister()
 
 
 if __name__ == '__main__':

@@ -4,8 +4,7 @@
 import os
 import tempfile
 
-import rospy
-from helpers import Case, bezier, joints, refusal, run
+from helpers import Case, bezier, joints, run
 
 ARM = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'data', 'arm.urdf')
 PANDA = os.path.realpath(os.path.join(os.path.dirname(ARM), '../../data/robots/panda'))
@@ -17,13 +16,6 @@ ROBOT = '''<robot name="one"><link name="base"/>
 
 
 class WrongParameters(Case):
-    def tearDown(self):
-        if rospy.has_param('/robot_description'):
-            rospy.delete_param('/robot_description')
-
-    def stopped(self, **parameters):
-        return refusal(self, 'wrong', **parameters)
-
     def test_each_wrong_type_and_value_is_told_by_name(self):
         cases = [('epsilon', 'small'), ('epsilon', 0.0), ('epsilon', -1e-6), ('epsilon', float('nan')), ('tf_timeout', -1.0),
                  ('max_nodes', 0), ('max_nodes', 2.5), ('budget_ms', 0), ('threads', 0), ('threads', 1000),
@@ -46,35 +38,35 @@ class WrongParameters(Case):
                  good.replace('<sphere radius="0.1"/>', '<torus radius="0.1" length="1"/>'),
                  good.replace('<sphere radius="0.1"/>', '<mesh filename="package://curve_proximity/none.stl"/>')]
         for urdf in cases:
-            rospy.set_param('/robot_description', urdf)
+            self.set_param('/robot_description', urdf)
             self.assertIn("arm", self.stopped())
-        rospy.set_param('/robot_description', 'no robot')
+        self.set_param('/robot_description', 'no robot')
         self.assertIn('robot_description', self.stopped())
 
     def test_allow_missing_geometry_insists(self):
         urdf = open(ARM).read().replace('<sphere radius="0.1"/>', '<sphere radius="-1"/>')
-        rospy.set_param('/robot_description', urdf)
+        self.set_param('/robot_description', urdf)
         node, server = self.begin('insisting', allow_missing_geometry=True)
         self.assertTrue(server.scene().success)
         self.assertIn('arm', node.output())
 
+    def scene_in(self, frame):
+        """The path of a scene file with a box in that frame."""
+        with tempfile.NamedTemporaryFile('w', suffix='.yaml', delete=False) as scene:
+            scene.write('world: {collision_objects: [{id: box, header: {frame_id: %s}, pose: {position: [1, 2, 3]}, '
+                        'primitives: [{type: box, dimensions: [1, 1, 1]}]}]}' % frame)
+        self.addCleanup(os.unlink, scene.name)
+        return scene.name
+
     def test_a_scene_file_is_there_from_the_start(self):
-        with tempfile.NamedTemporaryFile('w', suffix='.yaml') as scene:
-            scene.write('world: {collision_objects: [{id: box, header: {frame_id: world}, pose: {position: [1, 2, 3]}, '
-                        'primitives: [{type: box, dimensions: [1, 1, 1]}]}]}')
-            scene.flush()
-            _, server = self.begin('furnished', scene_file=scene.name)
-            found, = server.scene().objects
-            self.assertEqual((found.id, found.pose.position.y), ('box', 2.0))
+        _, server = self.begin('furnished', scene_file=self.scene_in('world'))
+        found, = server.scene().objects
+        self.assertEqual((found.id, found.pose.position.y), ('box', 2.0))
 
     def test_a_scene_file_with_an_object_in_a_frame_that_nobody_knows_is_refused(self):
-        with tempfile.NamedTemporaryFile('w', suffix='.yaml') as scene:
-            scene.write('world: {collision_objects: [{id: box, header: {frame_id: nowhere}, '
-                        'primitives: [{type: box, dimensions: [1, 1, 1]}]}]}')
-            scene.flush()
-            output = self.stopped(scene_file=scene.name, tf_timeout=0.1)
-            self.assertIn("'nowhere'", output)
-            self.assertIn('~scene_file', output)
+        output = self.stopped(scene_file=self.scene_in('nowhere'), tf_timeout=0.1)
+        self.assertIn("'nowhere'", output)
+        self.assertIn('~scene_file', output)
 
     def test_a_misspelt_name_is_warned_of(self):
         node, server = self.begin('misspelt', epsilom=1e-3)
@@ -85,7 +77,7 @@ class WrongParameters(Case):
         distances = []
         for uri in ('meshes/finger.stl', 'file://' + PANDA + '/meshes/finger.stl',
                     'package://curve_proximity/test/data/robots/panda/meshes/finger.stl'):
-            rospy.set_param('/robot_description', ROBOT % uri)
+            self.set_param('/robot_description', ROBOT % uri)
             name = 'meshes%d' % len(distances)
             _, server = self.begin(name, urdf_dir=PANDA, fixed_frame='base')
             row, = server.distance(LINE, links=['finger'], joint_state=joints(slide=0.0)).results
@@ -94,9 +86,9 @@ class WrongParameters(Case):
         self.assertEqual(len(set(distances)), 1)
         self.assertLess(distances[0][1], 1.0)
         for uri, word in (('http://localhost/finger.stl', 'http'), ('meshes/none.stl', 'none.stl'), ('', "'finger'")):
-            rospy.set_param('/robot_description', ROBOT % uri)
+            self.set_param('/robot_description', ROBOT % uri)
             self.assertIn(word, self.stopped(urdf_dir=PANDA))
-        rospy.set_param('/robot_description', ROBOT % 'meshes/finger.stl')
+        self.set_param('/robot_description', ROBOT % 'meshes/finger.stl')
         self.assertIn('finger.stl', self.stopped())  # relative to nothing
 
 
