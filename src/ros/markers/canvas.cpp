@@ -9,6 +9,7 @@
 
 #include "../../scene/geometry/surface.h"
 #include "messages/geometry_message.h"
+#include "messages/gradient_message.h"
 
 namespace curve_proximity {
 namespace {
@@ -42,20 +43,14 @@ std_msgs::ColorRGBA colour(double r, double g, double b, double a) {
   return out;
 }
 
-std_msgs::ColorRGBA clearanceColour(double clearance, double alpha) {
+std_msgs::ColorRGBA clearanceColour(double clearance) {
   static const Eigen::Vector3d stops[] = {
       {0.78, 0.10, 0.16}, {0.96, 0.62, 0.20}, {0.35, 0.72, 0.62}, {0.10, 0.46, 0.56}};
   constexpr int LAST = 3;
   const double s = LAST * std::sqrt(std::clamp(clearance / GREEN_CLEARANCE, 0.0, 1.0));
   const int i = std::min(LAST - 1, static_cast<int>(s));
   const Eigen::Vector3d c = stops[i] + (s - i) * (stops[i + 1] - stops[i]);
-  return colour(c.x(), c.y(), c.z(), alpha);
-}
-
-void setScale(Marker &marker, double x, double y, double z) {
-  marker.scale.x = x;
-  marker.scale.y = y;
-  marker.scale.z = z;
+  return colour(c.x(), c.y(), c.z(), 1.0);
 }
 
 /* ---- the canvas ---- */
@@ -68,7 +63,8 @@ Canvas::Canvas(std::string frame) : frame_(std::move(frame)) {
   array_.markers.push_back(all);
 }
 
-Marker &Canvas::add(const std::string &space, int type, const Eigen::Isometry3d &pose) {
+Marker &Canvas::add(const std::string &space, int type, const Eigen::Vector3d &scale, const std_msgs::ColorRGBA &tint,
+                    const Eigen::Isometry3d &pose) {
   Marker marker;
   marker.header.frame_id = frame_;
   marker.ns = space;
@@ -76,7 +72,8 @@ Marker &Canvas::add(const std::string &space, int type, const Eigen::Isometry3d 
   marker.type = type;
   marker.action = Marker::ADD;
   marker.pose = toMessage(pose);
-  setScale(marker, 1.0, 1.0, 1.0);
+  marker.scale = toVectorMessage(scale);
+  marker.color = tint;
   array_.markers.push_back(marker);
   return array_.markers.back();
 }
@@ -93,10 +90,8 @@ visualization_msgs::MarkerArray Canvas::take() {
 /** Not more of them than RViz can turn. */
 void Canvas::addPoints(const std::string &space, const ShapeDescription &shape, const Eigen::Isometry3d &pose,
                        const std_msgs::ColorRGBA &tint) {
-  Marker &marker = add(space, Marker::SPHERE_LIST, pose);
-  marker.color = tint;
   const double size = shape.dimensions.empty() ? POINT_SIZE : std::max(POINT_SIZE, 2 * shape.dimensions[0]);
-  setScale(marker, size, size, size);
+  Marker &marker = add(space, Marker::SPHERE_LIST, Eigen::Vector3d::Constant(size), tint, pose);
   const Eigen::Index step = 1 + shape.vertices.cols() / MOST_POINTS;
   for (Eigen::Index i = 0; i < shape.vertices.cols(); i += step)
     marker.points.push_back(toPointMessage(toVec3(shape.vertices.col(i))));
@@ -121,11 +116,7 @@ void Canvas::addOctree(const std::string &space, const ShapeDescription &shape, 
     const auto round = [](double x) { return static_cast<double>(static_cast<float>(x)); };
     const auto [found, added] = of_size.emplace(
         std::array<double, 3>{round(size.x()), round(size.y()), round(size.z())}, array_.markers.size());
-    if (added) {
-      Marker &marker = add(space, Marker::CUBE_LIST, pose);
-      marker.color = tint;
-      setScale(marker, size.x(), size.y(), size.z());
-    }
+    if (added) add(space, Marker::CUBE_LIST, size, tint, pose);
     Marker &marker = array_.markers[found->second];
     marker.points.push_back(toPointMessage(toVec3(middle)));
     const double share = 0.55 + 0.45 * (middle.z() - bottom) / height;
@@ -144,10 +135,7 @@ bool Canvas::addFile(const std::string &space, const ShapeDescription &shape, co
   }
   const Eigen::Vector3d scale =
       shape.dimensions.size() == 3 ? Eigen::Vector3d(shape.dimensions.data()) : Eigen::Vector3d::Ones();
-  Marker &marker = add(space, Marker::MESH_RESOURCE, pose);
-  marker.mesh_resource = "file://" + file;
-  marker.color = tint;
-  setScale(marker, scale.x(), scale.y(), scale.z());
+  add(space, Marker::MESH_RESOURCE, scale, tint, pose).mesh_resource = "file://" + file;
   return true;
 }
 
@@ -161,8 +149,7 @@ void Canvas::addSurface(const std::string &space, const ShapeDescription &shape,
   Surface surface =
       surfaceOf(triangles <= MOST_TRIANGLES ? shape : convex, body, resources, MOST_TRIANGLES, HALFSPACE_SIZE);
   if (surface.triangles.cols() == 0) surface = surfaceOf(convex, body, resources, MOST_TRIANGLES, HALFSPACE_SIZE);
-  Marker &marker = add(space, Marker::TRIANGLE_LIST, pose);
-  marker.color = tint;
+  Marker &marker = add(space, Marker::TRIANGLE_LIST, Eigen::Vector3d::Ones(), tint, pose);
   for (Eigen::Index i = 0; i < surface.triangles.size(); ++i)
     marker.points.push_back(toPointMessage(toVec3(surface.vertices.col(surface.triangles(i)))));
   if (shape.type == ShapeType::POLYGON || shape.type == ShapeType::HALFSPACE)
@@ -174,16 +161,11 @@ void Canvas::addShape(const std::string &space, const ShapeDescription &shape, c
                       const ResourceOptions &resources, const Eigen::Isometry3d &pose,
                       const std_msgs::ColorRGBA &tint) {
   const std::vector<double> &d = shape.dimensions;
-  const auto solid = [&](int type, double x, double y, double z) {
-    Marker &marker = add(space, type, pose);
-    marker.color = tint;
-    setScale(marker, x, y, z);
-  };
   switch (shape.type) {
-    case ShapeType::BOX: solid(Marker::CUBE, d[0], d[1], d[2]); break;
-    case ShapeType::SPHERE: solid(Marker::SPHERE, 2 * d[0], 2 * d[0], 2 * d[0]); break;
-    case ShapeType::ELLIPSOID: solid(Marker::SPHERE, 2 * d[0], 2 * d[1], 2 * d[2]); break;
-    case ShapeType::CYLINDER: solid(Marker::CYLINDER, 2 * d[1], 2 * d[1], d[0]); break;
+    case ShapeType::BOX: add(space, Marker::CUBE, {d[0], d[1], d[2]}, tint, pose); break;
+    case ShapeType::SPHERE: add(space, Marker::SPHERE, {2 * d[0], 2 * d[0], 2 * d[0]}, tint, pose); break;
+    case ShapeType::ELLIPSOID: add(space, Marker::SPHERE, {2 * d[0], 2 * d[1], 2 * d[2]}, tint, pose); break;
+    case ShapeType::CYLINDER: add(space, Marker::CYLINDER, {2 * d[1], 2 * d[1], d[0]}, tint, pose); break;
     case ShapeType::POINTS: addPoints(space, shape, pose, tint); break;
     case ShapeType::OCTREE: addOctree(space, shape, resources, pose, tint); break;
     default:

@@ -16,7 +16,7 @@ std_msgs::ColorRGBA colour(double r, double g, double b, double a);
 
 /** Red at a touch, amber between, teal with 0.3 m to spare; hue and lightness both change, for eyes that do not tell
  * red from green. */
-std_msgs::ColorRGBA clearanceColour(double clearance, double alpha = 1.0);
+std_msgs::ColorRGBA clearanceColour(double clearance);
 
 /** The i-th of n + 1 times from the beginning of a domain to its end. */
 inline double sampleAt(const std::array<double, 2> &domain, std::size_t i, std::size_t n) {
@@ -24,14 +24,13 @@ inline double sampleAt(const std::array<double, 2> &domain, std::size_t i, std::
   return domain[0] * (1.0 - part) + domain[1] * part;
 }
 
-void setScale(visualization_msgs::Marker &marker, double x, double y, double z);
-
 /** Gathers markers that share a frame, and numbers them. The first one takes away what was shown before. */
 class Canvas {
  public:
   explicit Canvas(std::string frame);
 
-  visualization_msgs::Marker &add(const std::string &space, int type,
+  visualization_msgs::Marker &add(const std::string &space, int type, const Eigen::Vector3d &scale,
+                                  const std_msgs::ColorRGBA &tint,
                                   const Eigen::Isometry3d &pose = Eigen::Isometry3d::Identity());
 
   /** A body, from its description where RViz has a type or a mesh file for it, else from its surface. resources: where

@@ -46,10 +46,8 @@ void addTube(Canvas &canvas, const std::string &space, const std::vector<Eigen::
              const std::vector<std_msgs::ColorRGBA> &tints, double radius) {
   const double width = std::max(2.0 * radius, CURVE_WIDTH);
   for (const int type : {Marker::LINE_STRIP, Marker::SPHERE_LIST}) { // the balls round off its joints and its ends
-    Marker &marker = canvas.add(space, type);
     const double across = type == Marker::SPHERE_LIST ? width : 0.0;
-    setScale(marker, width, across, across);
-    marker.color = colour(1, 1, 1, 1);
+    Marker &marker = canvas.add(space, type, {width, across, across}, colour(1, 1, 1, 1));
     for (const Eigen::Vector3d &point : points) marker.points.push_back(toPointMessage(toVec3(point)));
     marker.colors = tints;
   }
@@ -78,27 +76,19 @@ void addPair(Canvas &canvas, const Answer &answer) {
   const bool apart = result.upper > 0.0 || result.lower > 0.0;
   if (result.status < 0 || answer.b.empty() || !std::isfinite(result.upper)) return;
   const std_msgs::ColorRGBA tint = apart ? colour(0.12, 0.12, 0.14, 1.0) : clearanceColour(0.0);
-  Marker &line = canvas.add("pairs", Marker::LINE_LIST);
-  setScale(line, CURVE_WIDTH, 0.0, 0.0);
-  line.color = tint;
-  line.points = {toPointMessage(result.witness_mover), toPointMessage(result.witness_obstacle)};
-  for (const cprox_vec3 &end : {result.witness_mover, result.witness_obstacle}) {
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.translation() = toEigen(end);
-    Marker &ball = canvas.add("pairs", Marker::SPHERE, pose);
-    setScale(ball, 3 * CURVE_WIDTH, 3 * CURVE_WIDTH, 3 * CURVE_WIDTH);
-    ball.color = tint;
-  }
+  canvas.add("pairs", Marker::LINE_LIST, {CURVE_WIDTH, 0.0, 0.0}, tint).points = {
+      toPointMessage(result.witness_mover), toPointMessage(result.witness_obstacle)};
+  const Eigen::Vector3d ends[] = {toEigen(result.witness_mover), toEigen(result.witness_obstacle)};
+  for (const Eigen::Vector3d &end : ends)
+    canvas.add("pairs", Marker::SPHERE, Eigen::Vector3d::Constant(3 * CURVE_WIDTH), tint,
+               Eigen::Isometry3d(Eigen::Translation3d(end)));
 
   char text[64];
   std::snprintf(text, sizeof text, "%.1f mm", 1e3 * result.upper);
-  Eigen::Isometry3d middle = Eigen::Isometry3d::Identity();
-  middle.translation() =
-      0.5 * (toEigen(result.witness_mover) + toEigen(result.witness_obstacle)) + LABEL_ABOVE * Eigen::Vector3d::UnitZ();
-  Marker &label = canvas.add("labels", Marker::TEXT_VIEW_FACING, middle);
-  setScale(label, 0.0, 0.0, LABEL_HEIGHT);
-  label.color = colour(0.1, 0.1, 0.12, 1.0);
-  label.text = text;
+  const Eigen::Vector3d above = 0.5 * (ends[0] + ends[1]) + LABEL_ABOVE * Eigen::Vector3d::UnitZ();
+  const std_msgs::ColorRGBA ink = colour(0.1, 0.1, 0.12, 1.0);
+  const Eigen::Isometry3d pose(Eigen::Translation3d{above});
+  canvas.add("labels", Marker::TEXT_VIEW_FACING, {0.0, 0.0, LABEL_HEIGHT}, ink, pose).text = text;
 }
 
 } // namespace curve_proximity

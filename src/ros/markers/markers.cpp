@@ -68,7 +68,7 @@ MarkerArray toMarkers(const Snapshot &scene, const Drawing *curves, const Drawin
   // One robot: at the closest moment of the trajectory, or where the curves met it.
   StandingBodies everything = objects;
   addMovers(canvas, scene, motion, resources.objects, resources.robot);
-  if (motion && motion->motion) {
+  if (motion && motion->motion.robot) {
     addMotion(canvas, scene, *motion, resources.robot, objects);
   } else if (curves && curves->snapshot->robot()) {
     addRobot(canvas, *curves->snapshot, curves->links, resources.robot, everything);
@@ -89,7 +89,7 @@ MarkerPublisher::MarkerPublisher(ros::NodeHandle &handle, const Scene &scene, co
 void MarkerPublisher::show(std::shared_ptr<const Drawing> drawing) {
   if (!isWatched()) return;
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (drawing->motion || drawing->movers) motion_ = drawing;
+  if (drawing->motion.robot || drawing->motion.movers) motion_ = drawing;
   if (!drawing->lines.empty()) curves_ = std::move(drawing);
   changed_ = true;
 }

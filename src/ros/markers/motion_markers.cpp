@@ -96,9 +96,9 @@ void addRobot(Canvas &canvas, const Snapshot &scene, const LinkPoses &links, con
 
 void addMotion(Canvas &canvas, const Snapshot &scene, const Drawing &drawing, const ResourceOptions &resources,
                const StandingBodies &objects) {
-  const RobotMotion &motion = *drawing.motion;
+  const RobotMotion &motion = *drawing.motion.robot;
   const std::array<double, 2> domain = motion.domain();
-  const Answer *nearest = nearestOf(drawing.motion_answers);
+  const Answer *nearest = nearestOf(drawing.motion.answers);
   const double closest = nearest ? nearest->result.t : domain[0];
 
   // On its way, faintly.

@@ -13,7 +13,7 @@ namespace curve_proximity {
 void addRobot(Canvas &canvas, const Snapshot &scene, const LinkPoses &links, const ResourceOptions &resources,
               StandingBodies &placed);
 
-/** The robot of drawing.motion at its closest moment, on its way, and the way of the point that comes closest. scene:
+/** The robot of a drawing at its closest moment, on its way, and the way of the point that comes closest. scene:
  * as it is now; objects: those of it. */
 void addMotion(Canvas &canvas, const Snapshot &scene, const Drawing &drawing, const ResourceOptions &resources,
                const StandingBodies &objects);

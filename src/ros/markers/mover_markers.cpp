@@ -63,22 +63,23 @@ void addRobotAt(Canvas &canvas, const MovingRobot &robot, double t, const Resour
 /** When the nearest of the answers is. */
 double closestTime(const Drawing &drawing) {
   const Answer *nearest = nullptr;
-  for (const Answer &answer : drawing.motion_answers) {
+  for (const Answer &answer : drawing.motion.answers) {
     const bool measured = answer.result.status >= 0 && !answer.b.empty() && answer.kind != "self";
     if (measured && (!nearest || answer.result.upper < nearest->result.upper)) nearest = &answer;
   }
-  return nearest ? nearest->result.t : drawing.movers->domain()[0];
+  return nearest ? nearest->result.t : drawing.motion.movers->domain()[0];
 }
 
 } // namespace
 
 void addMovers(Canvas &canvas, const Snapshot &scene, const Drawing *drawing, const ResourceOptions &objects,
                const ResourceOptions &robots) {
-  const bool asked = drawing && drawing->movers && drawing->snapshot->version() == scene.version();
+  const bool asked = drawing && drawing->motion.movers && drawing->snapshot->version() == scene.version();
   const auto addMoving = [&](const DrawnObject &object) {
-    const Eigen::Isometry3d pose = drawing->movers->objectPose(object.description.id, closestTime(*drawing));
+    const Movers &movers = *drawing->motion.movers;
+    const Eigen::Isometry3d pose = movers.objectPose(object.description.id, closestTime(*drawing));
     addObject(canvas, "movers", object, pose, objects, OBJECT);
-    addWay(canvas, object, *drawing->movers, objects);
+    addWay(canvas, object, movers, objects);
   };
   for (const auto &entry : scene.moving()) {
     const DrawnObject object(*entry.second);
@@ -88,10 +89,11 @@ void addMovers(Canvas &canvas, const Snapshot &scene, const Drawing *drawing, co
       addObject(canvas, "movers", object, entry.second->trajectory.poses.front().pose, objects, OBJECT);
   }
   if (!asked) return;
-  if (drawing->rider) addMoving(DrawnObject(*drawing->rider, objects));
-  for (const MovingRobot &robot : drawing->robots) addRobotAt(canvas, robot, closestTime(*drawing), robots);
-  if (drawing->motion || drawing->motion_answers.empty()) return; // the robot's own picture has the pair
-  addPair(canvas, drawing->motion_answers.front());
+  const Drawing::Motion &motion = drawing->motion;
+  if (motion.rider) addMoving(DrawnObject(*motion.rider, objects));
+  for (const MovingRobot &robot : motion.others) addRobotAt(canvas, robot, closestTime(*drawing), robots);
+  if (motion.robot || motion.answers.empty()) return; // the robot's own picture has the pair
+  addPair(canvas, motion.answers.front());
 }
 
 } // namespace curve_proximity

@@ -262,7 +262,7 @@ void Pipeline::tellState() {
         results->message = why;
       });
   states_.publish(ProximityResultsPtr(results));
-  if (drawing->motion) markers_.showState(drawing);
+  if (drawing->motion.robot) markers_.showState(drawing);
 }
 
 /** Is the message about the robot? */

@@ -18,25 +18,13 @@ CompiledCurve make(const CurveDescription &curve, CurveBoxes boxes, const cprox_
 
 } // namespace
 
-/* Where a curve and all that it is measured against stand. */
-struct Queries::CurvePlace {
-  const Eigen::Isometry3d *frame = nullptr;
-  const StampedObstacles::Stamped *stamped = nullptr;
-  Coverage coverage;   /* of what is known of them and of its obstacles */
-  std::string why_not; /* empty where all is known */
-};
-
 /** Ready for the next curve. */
 Queries::CurveSearch &Queries::curveSearch(Work &work) {
   const bool by_joints = !work.joints.positions.empty();
   if (!work.search) {
     work.search.reset(new CurveSearch{StampedObstacles(work.snapshot, work.query, live_.srdf,
                                                        by_joints ? &work.joints.positions : nullptr, work.lookup),
-                                      WorkspacePool::Lease(workspaces_),
-                                      {},
-                                      0,
-                                      {},
-                                      nullptr});
+                                      WorkspacePool::Lease(workspaces_)});
   }
   work.doubts.objects(work.query);
   const bool placed = by_joints && work.search->obstacles.withRobot();
@@ -58,57 +46,44 @@ void Queries::answerCurves(Work &work) {
     const auto i = static_cast<std::size_t>(&path - request.paths.begin());
     const std::string id = numbered("path", i, request.paths.size());
     if (carriesBody(request)) {
-      answerPath(path, id, work);
-      tellProgress(work);
-      continue;
-    }
-    try {
-      Curve curve = toCurve(path, parameters_.path_radius);
-      curve.id = id;
-      answerCurve(curve, search, work);
-    } catch (const Error &error) {
-      refuseCurve(id, error.what(), search, work);
+      answerRide(
+          id, path.header.frame_id, [&] { return toPoses(path); }, work);
+    } else {
+      try {
+        Curve curve = toCurve(path, parameters_.path_radius);
+        curve.id = id;
+        answerCurve(curve, search, work);
+      } catch (const Error &error) {
+        refuseCurve(id, error.what(), search, work);
+      }
     }
     tellProgress(work);
   }
-}
-
-Queries::CurvePlace Queries::place(const Curve &curve, CurveSearch &search, Work &work) {
-  CurvePlace place;
-  try {
-    work.lookup.begin();
-    place.frame = &work.lookup.toFixed(curve.header.frame_id, curve.header.stamp);
-    const double age = work.lookup.age();
-    place.stamped = &search.obstacles.at(curve.header.stamp);
-    work.doubts.ages(std::fmax(age, place.stamped->age), search.obstacles.withRobot() ? work.joints.age : NAN);
-    place.coverage = work.doubts.coverage();
-  } catch (const Error &error) {
-    place.why_not = error.what();
-  }
-  return place;
 }
 
 /** Adds the rows of one curve. What is wrong with it fails its row only. */
 void Queries::answerCurve(const Curve &message, CurveSearch &search, Work &work) {
   if (work.request.turn) work.request.turn->yield();
   const Question &question = work.request.question;
-  const CurvePlace where = place(message, search, work);
+  const Query &query = work.query;
   try {
-    if (!where.why_not.empty()) throw Error(where.why_not);
-    Query of_place;
-    if (!where.coverage.complete()) of_place = work.query, of_place.coverage = where.coverage;
-    const Query &query = where.coverage.complete() ? work.query : of_place;
-    const SceneObstacles &obstacles = where.stamped->obstacles;
+    // Where the curve and all that it is measured against stand, and what is known of them.
+    work.lookup.begin();
+    const Eigen::Isometry3d &frame = work.lookup.toFixed(message.header.frame_id, message.header.stamp);
+    const double age = work.lookup.age();
+    const StampedObstacles::Stamped &stamped = search.obstacles.at(message.header.stamp);
+    work.doubts.ages(std::fmax(age, stamped.age), search.obstacles.withRobot() ? work.joints.age : NAN);
+    work.query.coverage = work.doubts.coverage();
     if (!work.request.problems && asksFor<question::Search, question::Gradient>(question) &&
         TimeBudget::isOver(query.options.stop_user)) {
       const Row row = stoppedCurve(message.id, question, query);
-      fillRow(row.answer, query.query_type, work.response.add(toMessage(row)));
+      fillRow(row.answer, question, query.query_type, work.response.add(toMessage(row)));
       ++search.curves;
       return;
     }
-    toDescription(message, *where.frame, search.description);
-    CompiledCurve curve = make(search.description, obstacles.boxes(), query.options, *search.workspace);
-    const CurveSubject subject{obstacles, curve, &search.description};
+    toDescription(message, frame, search.description);
+    CompiledCurve curve = make(search.description, stamped.obstacles.boxes(), query.options, *search.workspace);
+    const CurveSubject subject{stamped.obstacles, curve, &search.description};
     if (work.request.problems) {
       work.request.problems->push_back(problemOf(subject, query));
       ++search.curves;
@@ -127,7 +102,7 @@ void Queries::answerCurve(const Curve &message, CurveSearch &search, Work &work)
       answers.push_back(std::move(found.answer));
     }
     if (work.drawing.hasRoom()) {
-      search.drawn = &where.stamped->links;
+      search.drawn = &stamped.links;
       work.drawing.lines.push_back({std::move(curve), std::move(answers)});
     }
   } catch (const Error &error) {

@@ -83,10 +83,10 @@ class StampedObstacles {
 struct Queries::CurveSearch {
   StampedObstacles obstacles;
   WorkspacePool::Lease workspace;
-  CurveDescription description; /* of the curve at hand: its memory serves the next one */
-  std::size_t curves;           /* so far */
-  Failures failures;
-  const LinkPoses *drawn; /* the robot of the last curve that is drawn; null: none is */
+  CurveDescription description = {}; /* of the curve at hand: its memory serves the next one */
+  std::size_t curves = 0;            /* so far */
+  Failures failures = {};
+  const LinkPoses *drawn = nullptr; /* the robot of the last curve that is drawn; null: none is */
 
   void fail(const Proximity &row) {
     failures.count("curve " + std::to_string(curves) + " ('" + row.id + "'): " + row.message);

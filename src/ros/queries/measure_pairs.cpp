@@ -52,10 +52,9 @@ PairDescription toPairDescription(const PairQuery &message) {
 
 Proximity toRow(const Answer &answer, PairDescription::Asked asked) {
   Proximity row;
-  const bool translates = isTranslating(asked);
-  fillRow(answer, translates ? QueryType::COLLISION : QueryType::DISTANCE, row);
-  if (asked == PairDescription::TRANSLATING_CONTACT && answer.result.status >= 0)
-    row.t_contact_lower = answer.result.t_contact_lower;
+  Question question = question::Search{};
+  if (asked == PairDescription::TRANSLATING_CONTACT) question = question::Contact{};
+  fillRow(answer, question, isTranslating(asked) ? QueryType::COLLISION : QueryType::DISTANCE, row);
   return row;
 }
 

@@ -68,7 +68,8 @@ void Queries::answerTrajectories(Work &work) {
   if (trajectories.size() == 0) return;
   if (!work.snapshot->robot()) throw Error("a trajectory needs a robot, and this server has none");
   for (const auto &trajectory : trajectories) {
-    answerTrajectory(trajectory, work);
+    const auto make = [&](std::string &remark) { return toDescription(trajectory, work.joints.positions, remark); };
+    answerMotion(trajectoryName(work), trajectory.header.stamp, make, work);
     tellProgress(work);
   }
 }
@@ -78,14 +79,10 @@ void Queries::answerMultiDofTrajectories(Work &work) {
   for (const auto &trajectory : work.request.multi_dof_trajectories) {
     const Robot *robot = work.snapshot->robot().get();
     if (movesRobot(trajectory, robot, live_.srdf)) {
-      trajectory_msgs::JointTrajectory joints;
-      std::string why_not;
-      try {
-        joints = toJointTrajectory(trajectory, *robot, live_.srdf);
-      } catch (const Error &error) {
-        why_not = error.what();
-      }
-      answerTrajectory(joints, work, why_not);
+      const auto make = [&](std::string &remark) {
+        return toDescription(toJointTrajectory(trajectory, *robot, live_.srdf), work.joints.positions, remark);
+      };
+      answerMotion(trajectoryName(work), trajectory.header.stamp, make, work);
     } else {
       answerFlight(trajectory, work);
     }
@@ -120,13 +117,10 @@ MovingObject Queries::toRider(const ProximityQuery &query, const Snapshot &snaps
 /** What is asked about, and what of it is drawn. */
 struct Queries::Moving {
   std::vector<Row> rows;
-  std::vector<Proof> proofs;                 /**< of the rows, if they are asked for */
-  std::string remark;                        /**< of each row that has an answer */
-  TrajectoryDescription trajectory;          /**< of gradients */
-  std::shared_ptr<const RobotMotion> motion; /**< likewise below: as in Drawing */
-  std::shared_ptr<const Movers> movers;
-  std::vector<MovingRobot> robots;
-  std::optional<ObjectDescription> rider;
+  std::vector<Proof> proofs;        /**< of the rows, if they are asked for */
+  std::string remark;               /**< of each row that has an answer */
+  TrajectoryDescription trajectory; /**< of gradients */
+  Drawing::Motion drawn;
 
   /** Adds the rows of all parts of a subject. */
   void ask(const Subject &subject, const Query &query, const QueryRequest &request, Workspace &workspace) {
@@ -140,10 +134,7 @@ struct Queries::Moving {
     }
     if (query.options.certificate) // there is one row
       for (const Row &row : answered) proofs.push_back(takeProof(subject, query, row));
-    if (rows.empty())
-      rows = std::move(answered);
-    else
-      rows.insert(rows.end(), std::make_move_iterator(answered.begin()), std::make_move_iterator(answered.end()));
+    rows.insert(rows.end(), std::make_move_iterator(answered.begin()), std::make_move_iterator(answered.end()));
   }
 };
 
@@ -161,7 +152,7 @@ void Queries::answerMoving(const std::string &id, const std::vector<std::string>
     std::vector<DetailMessage> details;
     details.reserve(moving.rows.size());
     for (const Row &row : moving.rows) details.push_back(toMessage(row, &moving.trajectory));
-    std::vector<Answer> answers;
+    std::vector<Answer> &answers = moving.drawn.answers;
     answers.reserve(details.size());
     for (std::size_t i = 0; i < details.size(); ++i) {
       Answer &answer = answers.emplace_back(std::move(moving.rows[i].answer));
@@ -174,13 +165,7 @@ void Queries::answerMoving(const std::string &id, const std::vector<std::string>
         row.certified_scale = scale->certified, row.refused_scale = scale->refused;
       if (i < moving.proofs.size()) addProof(std::move(moving.proofs[i]), row);
     }
-    if (moving.motion || !work.drawing.motion) {
-      work.drawing.motion = std::move(moving.motion);
-      work.drawing.movers = std::move(moving.movers);
-      work.drawing.robots = std::move(moving.robots);
-      work.drawing.rider = std::move(moving.rider);
-      work.drawing.motion_answers = std::move(answers);
-    }
+    if (moving.drawn.robot || !work.drawing.motion.robot) work.drawing.motion = std::move(moving.drawn);
   } catch (const Error &error) {
     if (problems) problems->resize(problems_before);
     for (const std::string &kind : kinds) {
@@ -191,51 +176,34 @@ void Queries::answerMoving(const std::string &id, const std::vector<std::string>
   tellFailure(id, before, work.response);
 }
 
-/** A body along poses in the frame of the header. */
-void Queries::answerRide(const std::string &id, const std::string &frame, const ros::Time &stamp,
-                         std::vector<TimedPose> poses, const std::string &remark, Work &work) {
+/** A body along poses in a frame. */
+void Queries::answerRide(const std::string &id, const std::string &frame, const std::function<PathPoses()> &poses,
+                         Work &work) {
   answerMoving(id, {Proximity::KIND_MOVERS}, work, [&](Workspace &workspace, Moving &out) {
+    PathPoses along = poses();
     work.lookup.begin();
     if (!work.query.links.empty()) throw Error("links and group do not apply to a body");
     if (work.errors) throw Error("errors do not apply to a body");
-    const Eigen::Isometry3d in_fixed = work.lookup.toFixed(frame, stamp);
-    for (TimedPose &pose : poses) pose.pose = in_fixed * pose.pose;
+    const Eigen::Isometry3d in_fixed = work.lookup.toFixed(frame, along.stamp);
+    for (TimedPose &pose : along.poses) pose.pose = in_fixed * pose.pose;
     demandTime(work.query);
-    const MovingObject rides = toRider(work.request.more, *work.snapshot, std::move(poses));
-    const Surroundings around(work.snapshot, work.request.more, robots_, rides, resourceOptions("", parameters_), stamp,
-                              work.lookup, mostBytes(), stopOf(work.query));
+    const MovingObject rides = toRider(work.request.more, *work.snapshot, std::move(along.poses));
+    const Surroundings around(work.snapshot, work.request.more, robots_, rides, resourceOptions("", parameters_),
+                              along.stamp, work.lookup, mostBytes(), stopOf(work.query));
     work.doubts.joints(around.unknown());
     out.ask(around.subject(false), covered(work.query, NAN, true, work), work.request, workspace);
-    out.remark = remark;
-    out.movers = around.movers();
-    out.robots = around.robots();
-    out.rider = rides.object;
+    out.remark = along.remark;
+    out.drawn.movers = around.movers();
+    out.drawn.others = around.robots();
+    out.drawn.rider = rides.object;
   });
-}
-
-void Queries::answerPath(const nav_msgs::Path &path, const std::string &id, Work &work) {
-  PathPoses along;
-  try {
-    along = toPoses(path);
-  } catch (const Error &error) {
-    return answerMoving(id, {Proximity::KIND_MOVERS}, work, [&](Workspace &, Moving &) { throw error; });
-  }
-  answerRide(id, path.header.frame_id, along.stamp, std::move(along.poses), along.remark, work);
 }
 
 void Queries::answerFlight(const trajectory_msgs::MultiDOFJointTrajectory &trajectory, Work &work) {
   if (carriesBody(work.request)) {
     for (std::size_t i = 0; i < trajectory.joint_names.size(); ++i) {
-      std::vector<TimedPose> poses;
-      try {
-        poses = toPoses(trajectory, i);
-      } catch (const Error &error) {
-        answerMoving(trajectory.joint_names[i], {Proximity::KIND_MOVERS}, work,
-                     [&](Workspace &, Moving &) { throw error; });
-        continue;
-      }
-      answerRide(trajectory.joint_names[i], trajectory.header.frame_id, trajectory.header.stamp, std::move(poses), "",
-                 work);
+      const auto poses = [&] { return PathPoses{toPoses(trajectory, i), trajectory.header.stamp, ""}; };
+      answerRide(trajectory.joint_names[i], trajectory.header.frame_id, poses, work);
     }
     return;
   }
@@ -250,24 +218,14 @@ void Queries::answerFlight(const trajectory_msgs::MultiDOFJointTrajectory &traje
   }
 }
 
-/** why_not: what is wrong with it already. */
-void Queries::answerTrajectory(const trajectory_msgs::JointTrajectory &message, Work &work, std::string why_not) {
-  const QueryRequest &request = work.request;
-  TrajectoryDescription trajectory;
-  std::string remark;
-  try {
-    if (why_not.empty()) trajectory = toDescription(message, work.joints.positions, remark);
-  } catch (const Error &error) {
-    why_not = error.what();
-  }
-  trajectory.coverage.add(request.coverage);
-  const auto &others = request.multi_dof_trajectories;
+/** The name of the robot's next trajectory. */
+std::string Queries::trajectoryName(Work &work) const {
+  const auto &others = work.request.multi_dof_trajectories;
   const auto moving = std::count_if(others.begin(), others.end(), [&](const auto &other) {
     return movesRobot(other, work.snapshot->robot().get(), live_.srdf);
   });
-  trajectory.id =
-      numbered("trajectory", work.trajectories++, request.trajectories.size() + static_cast<std::size_t>(moving));
-  answerMotion(std::move(trajectory), message.header.stamp, remark, why_not, work);
+  return numbered("trajectory", work.trajectories++,
+                  work.request.trajectories.size() + static_cast<std::size_t>(moving));
 }
 
 /** The robot where it stands: a trajectory of one point. */
@@ -275,13 +233,13 @@ void Queries::answerState(Work &work) {
   if (!work.request.more.robot_state) return;
   if (!work.snapshot->robot()) throw Error("robot_state needs a robot, and this server has none");
   TrajectoryDescription state;
-  state.id = "state";
   state.points.emplace_back();
   for (const auto &[joint, position] : work.joints.positions) {
     state.joints.push_back(joint);
     state.points.back().positions.push_back(position);
   }
-  answerMotion(std::move(state), work.request.more.joint_state.header.stamp, "", "", work);
+  answerMotion(
+      "state", work.request.more.joint_state.header.stamp, [&](std::string &) { return state; }, work);
 }
 
 /** All that moves, with nobody in its middle. */
@@ -294,54 +252,54 @@ void Queries::answerMovers(Work &work) {
                               stopOf(work.query));
     work.doubts.joints(around.unknown());
     out.ask(around.subject(request.more.self_collision != 0), covered(work.query, NAN, true, work), request, workspace);
-    out.movers = around.movers();
-    out.robots = around.robots();
+    out.drawn.movers = around.movers();
+    out.drawn.others = around.robots();
   });
 }
 
-void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &stamp, const std::string &remark,
-                           const std::string &why_not, Work &work) {
+/** The robot along what `make` makes. */
+void Queries::answerMotion(const std::string &id, const ros::Time &stamp, const MakeTrajectory &make, Work &work) {
   const QueryRequest &request = work.request;
   std::vector<std::string> kinds{Proximity::KIND_ENVIRONMENT};
   if (request.more.self_collision) kinds.push_back(Proximity::KIND_SELF);
-  const std::string id = trajectory.id;
   answerMoving(id, kinds, work, [&](Workspace &workspace, Moving &out) {
     // The trajectory, the joints that it leaves alone, and where the robot stands.
     work.lookup.begin();
-    if (!why_not.empty()) throw Error(why_not);
+    TrajectoryDescription &trajectory = out.trajectory = make(out.remark);
+    trajectory.id = id;
+    trajectory.coverage.add(request.coverage);
     demandTime(work.query);
     const Robot &robot = *work.snapshot->robot();
     adoptBase(live_.srdf.virtual_joints, robot, trajectory);
     const std::string unknown =
         unknownJoints(robot, trajectory.joints, work.joints.positions, parameters_.assumed_joints);
     work.doubts.joints(unknown);
-    out.remark = remark;
     const Eigen::Isometry3d base = trajectory.base.empty()
                                        ? rootPose(robot, live_.srdf, stamp, work.lookup)
                                        : work.lookup.toFixed(trajectory.base.front().parent_frame, stamp);
     demandTime(work.query);
-    out.motion = std::make_shared<const RobotMotion>(work.snapshot, trajectory, work.joints.positions,
-                                                     live_.disabled(*work.snapshot), base, work.query.links);
-    out.trajectory = std::move(trajectory);
+    const auto motion = std::make_shared<const RobotMotion>(work.snapshot, trajectory, work.joints.positions,
+                                                            live_.disabled(*work.snapshot), base, work.query.links);
+    out.drawn.robot = motion;
 
     Query environment = work.query;
     environment.links.clear(); // the motion has them
     const ErrorBounds *errors = work.errors ? &*work.errors : nullptr;
     if (movesBeside(request.more, *work.snapshot)) {
       if (errors) throw Error("errors do not apply among objects that move");
-      const Surroundings around(work.snapshot, request.more, robots_, out.motion, stamp, out.trajectory.points.size(),
+      const Surroundings around(work.snapshot, request.more, robots_, motion, stamp, trajectory.points.size(),
                                 work.lookup, mostBytes(), stopOf(work.query));
       const std::vector<std::string> own = ownNames(*work.snapshot, work.query.links);
       if (unknown.empty()) work.doubts.joints(around.unknown());
       Query among = covered(environment, work.joints.age, true, work);
       among.links = own;
       out.ask(around.subject(false), among, request, workspace);
-      out.movers = around.movers();
-      out.robots.assign(around.robots().begin() + 1, around.robots().end());
+      out.drawn.movers = around.movers();
+      out.drawn.others.assign(around.robots().begin() + 1, around.robots().end());
     } else {
       const bool by_objects = !asksFor<question::Sweep>(request.question);
-      out.ask(MotionSubject{*out.motion, false, errors}, covered(environment, work.joints.age, by_objects, work),
-              request, workspace);
+      out.ask(MotionSubject{*motion, false, errors}, covered(environment, work.joints.age, by_objects, work), request,
+              workspace);
     }
     if (!request.more.self_collision) return;
     Query self = environment; // of no objects
@@ -349,7 +307,7 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
     self.objects.clear();
     if (request.turn) request.turn->yield();
     work.doubts.joints(unknown);
-    out.ask(MotionSubject{*out.motion, true, errors}, covered(self, work.joints.age, false, work), request, workspace);
+    out.ask(MotionSubject{*motion, true, errors}, covered(self, work.joints.age, false, work), request, workspace);
   });
 }
 

@@ -236,9 +236,6 @@ void Queries::answerAll(const QueryRequest &request, QueryResponse &response, Dr
             Doubts(parameters_.max_age, snapshot, response.scene.sensors, std::move(seen.unknowns)),
             response,
             drawing,
-            0,
-            0,
-            nullptr,
             nullptr};
   if (request.more.certificate && !request.problems) {
     work.certificate.reset(cprox_certificate_create());

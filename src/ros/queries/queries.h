@@ -50,14 +50,8 @@ List<Message> listOf(const std::vector<Message> &messages) {
   return {messages.data(), messages.data() + messages.size()};
 }
 
+struct PathPoses;
 struct QueryResponse;
-
-/** Ends the life of a certificate. */
-struct CertificateEnd {
-  void operator()(cprox_certificate *certificate) const {
-    cprox_certificate_free(certificate);
-  }
-};
 
 /** Told of the rows so far, and how many curves, paths and trajectories are done. */
 using Progress = std::function<void(const QueryResponse &response, std::size_t done)>;
@@ -150,15 +144,14 @@ struct Drawing {
   SnapshotPtr snapshot;
   LinkPoses links; /**< of the last of these curves; without curves those of the motion at its closest moment */
 
-  /** The robot along the last trajectory of the request, and what was said of it; null: none. */
-  std::shared_ptr<const RobotMotion> motion;
-  std::vector<Answer> motion_answers;
-
-  /** What moved beside the robot of the last trajectory, or of the last request of movers or of a body along a path;
-   *  null: nothing. */
-  std::shared_ptr<const Movers> movers;
-  std::vector<MovingRobot> robots;        /**< of it, without the robot of `motion` */
-  std::optional<ObjectDescription> rider; /**< of it: the body along a path, which is none of the scene */
+  /** Of the last trajectory of the request; without one of all that moves, or of the last body along a path. */
+  struct Motion {
+    std::shared_ptr<const RobotMotion> robot; /**< along the trajectory; null: none */
+    std::shared_ptr<const Movers> movers;     /**< what moved beside it; null: nothing */
+    std::vector<MovingRobot> others;          /**< of these, without `robot` */
+    std::optional<ObjectDescription> rider;   /**< of these: the body along a path, which is none of the scene */
+    std::vector<Answer> answers;
+  } motion;
 
   bool hasRoom() const {
     return lines.size() < most_lines;
@@ -192,7 +185,6 @@ class Queries {
 
  private:
   struct CurveSearch;
-  struct CurvePlace;
 
   /* A request on its way: what was asked, of which scene, and what the answer rests on. */
   struct Work {
@@ -205,10 +197,11 @@ class Queries {
     Doubts doubts;
     QueryResponse &response;
     Drawing &drawing;
-    std::size_t done;                    /* of the request's curves, paths and trajectories */
-    std::size_t trajectories;            /* of the robot, so far */
     std::unique_ptr<CurveSearch> search; /* null as long as there is no curve */
-    std::unique_ptr<cprox_certificate, CertificateEnd> certificate; /* of the latest row; null: none is asked for */
+    std::size_t done = 0;                /* of the request's curves, paths and trajectories */
+    std::size_t trajectories = 0;        /* of the robot, so far */
+    std::unique_ptr<cprox_certificate, decltype(&cprox_certificate_free)> certificate{
+        nullptr, cprox_certificate_free}; /* of the latest row; null: none is asked for */
   };
 
   std::size_t mostBytes() const; /* that a request may take */
@@ -217,7 +210,6 @@ class Queries {
   void answerAll(const QueryRequest &request, QueryResponse &response, Drawing &drawing);
   void answerCurves(Work &work);
   CurveSearch &curveSearch(Work &work);
-  static CurvePlace place(const Curve &curve, CurveSearch &search, Work &work);
   static void answerCurve(const Curve &message, CurveSearch &search, Work &work);
   static void refuseCurve(const std::string &id, const std::string &why, CurveSearch &search, Work &work);
   void answerTrajectories(Work &work);
@@ -225,20 +217,18 @@ class Queries {
   void answerFlight(const trajectory_msgs::MultiDOFJointTrajectory &trajectory, Work &work);
   bool carriesBody(const QueryRequest &request) const;
   MovingObject toRider(const ProximityQuery &query, const Snapshot &snapshot, std::vector<TimedPose> poses) const;
-  void answerRide(const std::string &id, const std::string &frame, const ros::Time &stamp, std::vector<TimedPose> poses,
-                  const std::string &remark, Work &work);
+  void answerRide(const std::string &id, const std::string &frame, const std::function<PathPoses()> &poses, Work &work);
   struct Moving;
   void answerMoving(const std::string &id, const std::vector<std::string> &kinds, Work &work,
                     const std::function<void(Workspace &, Moving &)> &ask);
-  void answerPath(const nav_msgs::Path &path, const std::string &id, Work &work);
-  void answerTrajectory(const trajectory_msgs::JointTrajectory &message, Work &work, std::string why_not = "");
+  std::string trajectoryName(Work &work) const;
   void answerState(Work &work);
   void answerMovers(Work &work);
   static Query covered(Query query, double joints, bool with_objects, Work &work);
   static void tellProgress(Work &work);
   static std::string numbered(const std::string &name, std::size_t i, std::size_t all); /* the name of one of several */
-  void answerMotion(TrajectoryDescription trajectory, const ros::Time &stamp, const std::string &remark,
-                    const std::string &why_not, Work &work);
+  using MakeTrajectory = std::function<TrajectoryDescription(std::string &remark)>;
+  void answerMotion(const std::string &id, const ros::Time &stamp, const MakeTrajectory &make, Work &work);
   void describe(Work &work) const;
 
   const Parameters &parameters_;

@@ -85,12 +85,13 @@ SweptCells toMessage(const SweptVolume &volume) {
 
 } // namespace
 
-void fillRow(const Answer &answer, QueryType query_type, Proximity &message) {
+void fillRow(const Answer &answer, const Question &question, QueryType query_type, Proximity &message) {
   if (answer.result.status < 0) {
     message = toFailedRow(answer.id, answer.kind, answer.message);
     message.status = answer.status;
     return;
   }
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
   const cprox_result &result = answer.result;
   message.id = answer.id;
   message.kind = answer.kind;
@@ -100,8 +101,9 @@ void fillRow(const Answer &answer, QueryType query_type, Proximity &message) {
   message.upper = result.upper;
   message.t = result.t;
   const bool on_curve = answer.kind == Proximity::KIND_CURVE && result.obstacle_index >= 0;
-  message.t_b = on_curve ? result.t_obstacle : std::numeric_limits<double>::quiet_NaN();
-  message.t_contact_lower = message.certified_scale = message.refused_scale = std::numeric_limits<double>::quiet_NaN();
+  message.t_b = on_curve ? result.t_obstacle : none;
+  message.t_contact_lower = asksFor<question::Contact>(question) ? result.t_contact_lower : none;
+  message.certified_scale = message.refused_scale = none;
   message.second_opinion = secondOpinionName(answer.second_opinion.verdict);
   message.second_distance = answer.second_opinion.distance;
   message.witness_a = toPointMessage(result.witness_mover);
@@ -132,12 +134,6 @@ Proximity toFailedRow(const std::string &id, const std::string &kind, const std:
   message.lod = cprox_lod_name(CPROX_LOD_NONE);
   message.message = why;
   return message;
-}
-
-void fillRow(const Answer &answer, const Question &question, QueryType query_type, Proximity &message) {
-  fillRow(answer, query_type, message);
-  if (asksFor<question::Contact>(question) && answer.result.status >= 0)
-    message.t_contact_lower = answer.result.t_contact_lower;
 }
 
 DetailMessage toMessage(const Row &row, const TrajectoryDescription *trajectory) {

@@ -30,9 +30,6 @@ using DetailMessage =
 constexpr std::size_t MOST_VIOLATIONS = 256;
 
 /** Fills one row of the results, which is as it was made. What has no answer has NaN for numbers. */
-void fillRow(const Answer &answer, QueryType query_type, Proximity &message);
-
-/** The same of a row that answers a question. */
 void fillRow(const Answer &answer, const Question &question, QueryType query_type, Proximity &message);
 
 /** The detail of a row. trajectory: of a motion whose gradient it is. Throws Error for too many violations. */
