@@ -13,13 +13,12 @@ import numpy
 import rosgraph
 from curve_proximity.msg import ProximityQuery
 from curve_proximity.srv import ApplyScene, ApplySceneRequest, DistanceRequest, Distance
-from helpers import (Call, Node, Server, bezier, handshake, host_and_port, is_sanitized, raw_call, request_of_points, ring_and_shells, run,
+from helpers import (LINE, Call, Node, Server, bezier, handshake, host_and_port, is_sanitized, raw_call, request_of_points, ring_and_shells, run,
                      serialized, sphere, until)
 
 LIMIT_MB = 300
 ROOM_MB = 64
 AT_REST_MB = 45  # of a node that nobody has asked yet, at most
-LINE = bezier((-1, 0, 1), (1, 0, 1))
 
 
 class Attacks(unittest.TestCase):

@@ -4,15 +4,14 @@
 import subprocess
 import sys
 import time
-import unittest
 
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from curve_proximity.msg import QueryAction, QueryActionFeedback, QueryActionResult, QueryGoal
-from helpers import ActionClient, Server, bezier, heard, query, ring_and_shells, run, sphere, until
+from helpers import ActionClient, Case, Server, bezier, heard, query, ring_and_shells, run, sphere, until
 
 
-class Batches(unittest.TestCase):
+class Batches(Case):
     @classmethod
     def setUpClass(cls):
         cls.server = Server()
@@ -67,8 +66,7 @@ class Batches(unittest.TestCase):
         self.assertTrue(self.client.wait_for_result(rospy.Duration(20)))  # all of it would take minutes
         self.assertEqual(self.client.get_state(), GoalStatus.PREEMPTED)
         result = self.client.get_result()
-        self.assertFalse(result.success)
-        self.assertIn('cancelled', result.message)
+        self.assertRefused(result, 'cancelled')
         self.assertEqual((result.results[0].id, result.results[0].status), ('first', 'ok'))
         self.assertIn('stopped', {row.status for row in result.results})
         self.assertTrue(self.server.distance(first).success)
@@ -98,8 +96,7 @@ class Batches(unittest.TestCase):
                              (dict(query_type='distance', curves=[line], budget_ms=-1), 'budget_ms')):
             state, result = self.send(**fields)
             self.assertEqual(state, GoalStatus.ABORTED, fields)
-            self.assertFalse(result.success)
-            self.assertIn(word, result.message)
+            self.assertRefused(result, word)
 
 
 def send_and_stay(server):

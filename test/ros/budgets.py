@@ -7,12 +7,11 @@ import math
 import time
 
 import rospy
-from curve_proximity import srv
 from curve_proximity.msg import Body, CollisionObject, ConstraintQuery, PairQuery, RobotTrajectory
-from helpers import (Case, Node, RawClient, Server, bezier, box, bspline, framed, joint_trajectory, joints, moving, path, point, pose, query, run,
-                     serialized, sphere, turned, waypoint)
+from helpers import (SERVICES, Case, Node, RawClient, Server, bezier, box, bspline, framed, joint_trajectory, joints, moving, path, point,
+                     pose, query, run, serialized, sphere, turned, waypoint)
 
-SEARCHES = [srv.Distance, srv.Tolerance, srv.Collision]
+SEARCHES = ['distance', 'tolerance', 'collision']
 BUDGET, SLACK = 0.2, 10.0  # [s]
 MANY = 1000  # links of the long robot
 
@@ -81,31 +80,28 @@ class Budgets(Case):
         self.name = name
         return Server('/' + name, timeout=60)
 
-    def asks(self, what, kind, request):
+    def asks(self, what, which, **fields):
         """One call; its time is from the last byte that is sent to the first that comes back."""
-        service = {srv.Distance: 'distance', srv.Tolerance: 'tolerance', srv.Collision: 'collision', srv.ListViolations: 'violations',
-                   srv.ClearanceProfile: 'clearance_profile', srv.NearestPairs: 'nearest_pairs', srv.MeasurePairs: 'measure_pairs',
-                   srv.TimeOfContact: 'time_of_contact', srv.EvaluateConstraints: 'evaluate_constraints'}[kind]
-        data = serialized(request)
-        client = RawClient('/%s/%s' % (self.name, service), kind, 200)
+        data = serialized(SERVICES[which]._request_class(**fields))
+        client = RawClient('/%s/%s' % (self.name, which), SERVICES[which], 200)
         client.connection.sendall(framed(data))
         began = time.monotonic()
         good = client._received(1) == b'\1'
         took = time.monotonic() - began
         self.assertTrue(good)
-        answer = kind._response_class().deserialize(client._sized())
+        answer = client.kind._response_class().deserialize(client._sized())
         client.close()
         self.rows.append((what, 1e3 * took, len(data) / 1e6, answer.message[:60]))
         with self.subTest(what):
             self.assertLess(took, 2 * BUDGET + SLACK)
         return answer
 
-    def each(self, what, subject, kinds=None):
+    def each(self, what, subject, those=None):
         """Every question about a subject."""
-        details = {srv.Distance: {}, srv.Tolerance: dict(delta=0.05), srv.Collision: {}, srv.ListViolations: dict(delta=0.05),
-                   srv.ClearanceProfile: dict(intervals=100), srv.NearestPairs: dict(count=10), srv.TimeOfContact: {}}
-        for kind in kinds or details:
-            self.asks('%s of %s' % (kind.__name__, what), kind, kind._request_class(query=subject, **details[kind]))
+        details = dict(distance={}, tolerance=dict(delta=0.05), collision={}, violations=dict(delta=0.05),
+                       clearance_profile=dict(intervals=100), nearest_pairs=dict(count=10), time_of_contact={})
+        for which in those or details:
+            self.asks('%s of %s' % (which, what), which, query=subject, **details[which])
 
     def test_curves(self):
         server = self.begin('punctual_curves', links=0)
@@ -114,27 +110,26 @@ class Budgets(Case):
         self.each('4000 curves of 40 points', query(many), SEARCHES)
         long = bspline([(math.cos(0.01 * i), math.sin(0.013 * i), math.sin(0.017 * i)) for i in range(300000)], 3)
         self.each('a curve of 300,000 points', query([long], epsilon=1e-12))
-        self.asks('per_object of 50 curves among 200', srv.Distance, srv.DistanceRequest(query(many[:50], per_object=True)))
-        self.asks('gradient of 4000 curves', srv.Distance, srv.DistanceRequest(query(many, gradient=True)))
+        self.asks('per_object of 50 curves among 200', 'distance', query=query(many[:50], per_object=True))
+        self.asks('gradient of 4000 curves', 'distance', query=query(many, gradient=True))
         body = box('rider', (0.2, 0.1, 0.3))
-        self.each('a body along 100,000 poses', query([], paths=[way(100000)], body=body), [srv.Distance, srv.ClearanceProfile])
+        self.each('a body along 100,000 poses', query([], paths=[way(100000)], body=body), ['distance', 'clearance_profile'])
 
     def test_trajectories(self):
         server = self.begin('punctual_motions')
         server.replace(sphere('ball', 0.1, (0.1, 0.2, 0)), box('post', (0.1, 0.1, 0.1), (0.1, -0.2, 0)))
         for points in (20000, 280000):
             subject = query([], motion(points))
-            self.each('a trajectory of %d points' % points, subject, None if points == 20000 else [srv.Distance, srv.ListViolations])
-            self.asks('profile per link of %d points' % points, srv.ClearanceProfile,
-                      srv.ClearanceProfileRequest(query=subject, intervals=100, per_link=True))
+            self.each('a trajectory of %d points' % points, subject, None if points == 20000 else ['distance', 'violations'])
+            self.asks('profile per link of %d points' % points, 'clearance_profile', query=subject, intervals=100, per_link=True)
             subject.gradient = True
-            self.asks('gradient of %d points' % points, srv.Distance, srv.DistanceRequest(subject))
+            self.asks('gradient of %d points' % points, 'distance', query=subject)
         self.each('2000 trajectories of 2 points', query([], trajectories=[motion(2, turns=0.001 * i + 1) for i in range(2000)],
                                                          self_collision=True), SEARCHES)
         others = [RobotTrajectory(name='r%d' % i, trajectory=motion(2)) for i in range(2000)]
         for i, other in enumerate(others):
             other.base.pose = pose((0.5 * (i % 50), 0.5 * (i // 50), 0))
-        self.each('2000 moving robots', query([], motion(2), moving_robots=others), [srv.Distance, srv.ClearanceProfile])
+        self.each('2000 moving robots', query([], motion(2), moving_robots=others), ['distance', 'clearance_profile'])
 
     def test_many_objects(self):
         server = self.begin('punctual_scenes')
@@ -145,15 +140,14 @@ class Budgets(Case):
         for subject, what in ((state, 'the state'), (query([], motion(2)), 'a trajectory'), (query([bezier((-1, 0, 1), (30, 30, 1))]),
                                                                                             'a curve')):
             subject.per_object, subject.joint_state = True, state.joint_state
-            self.asks('per_object of %s among 10,000' % what, srv.Distance, srv.DistanceRequest(subject))
+            self.asks('per_object of %s among 10,000' % what, 'distance', query=subject)
 
     def test_movers(self):
         server = self.begin('punctual_movers')
         for count in (100, 400, 1000):
             server.replace(*[mover(i) for i in range(count)])
             self.each('%d movers' % count, query([], movers=True))
-            self.asks('violations of %d movers, fine' % count, srv.ListViolations,
-                      srv.ListViolationsRequest(query=query([], movers=True), delta=0.3, resolution=1e-9))
+            self.asks('violations of %d movers, fine' % count, 'violations', query=query([], movers=True), delta=0.3, resolution=1e-9)
 
     def test_a_long_robot(self):
         server = self.begin('punctual_chain', MANY)
@@ -163,32 +157,31 @@ class Budgets(Case):
         self.each('the state of %d links' % MANY, state)
         along = query([], motion(100), self_collision=True)
         self.each('a trajectory of %d links' % MANY, along)
-        self.asks('profile per link of %d links' % MANY, srv.ClearanceProfile,
-                  srv.ClearanceProfileRequest(query=query([], motion(100)), intervals=100, per_link=True))
+        self.asks('profile per link of %d links' % MANY, 'clearance_profile', query=query([], motion(100)), intervals=100, per_link=True)
         along.gradient = True
-        self.asks('gradient of %d links' % MANY, srv.Distance, srv.DistanceRequest(along))
+        self.asks('gradient of %d links' % MANY, 'distance', query=along)
 
     def test_pairs_and_constraints(self):
         self.begin('punctual_pairs')
         balls = [Body(type='sphere', dimensions=[0.1 * k]) for k in (1, 2)]
-        self.asks('20,000 pairs', srv.MeasurePairs, srv.MeasurePairsRequest(pairs=[pair(*balls) for _ in range(20000)]))
+        self.asks('20,000 pairs', 'measure_pairs', pairs=[pair(*balls) for _ in range(20000)])
         large = hull(200000).bodies[0]
         for ask in ('distance', 'growth', 'translating_distance', 'translating_contact'):
             asked = pair(large, large, ask)
             if ask.startswith('translating'):
                 asked.velocity_a.x, asked.duration = 1.0, 10.0
-            self.asks('%s of a hull of 200,000' % ask, srv.MeasurePairs, srv.MeasurePairsRequest(pairs=[asked]))
+            self.asks('%s of a hull of 200,000' % ask, 'measure_pairs', pairs=[asked])
         for provider in ('CurveDistance', 'SuperquadricDistance', 'FourierGap'):
             case = ConstraintQuery(id='case', providers=['curve_proximity/' + provider], a=hull(100000), b=hull(100, '', (3, 0, 0)))
             if provider == 'CurveDistance':
                 case.a, case.curve = CollisionObject(), bspline([(math.sin(i), math.cos(i), 0.001 * i) for i in range(100000)], 3)
-            self.asks('%s of 100,000 points' % provider, srv.EvaluateConstraints, srv.EvaluateConstraintsRequest(cases=[case]))
+            self.asks('%s of 100,000 points' % provider, 'evaluate_constraints', cases=[case])
             case = ConstraintQuery(id='case', providers=['curve_proximity/' + provider], a=hull(50), b=hull(50, '', (3, 0, 0)))
             if provider == 'CurveDistance':
                 case.a, case.curve = CollisionObject(), bezier((-1, 0, 1), (1, 0, 1))
-            self.asks('500 cases of %s' % provider, srv.EvaluateConstraints, srv.EvaluateConstraintsRequest(cases=[case] * 500))
+            self.asks('500 cases of %s' % provider, 'evaluate_constraints', cases=[case] * 500)
         case = ConstraintQuery(id='case', trajectory=motion(20000))
-        self.asks('constraints of a trajectory of 20,000 points', srv.EvaluateConstraints, srv.EvaluateConstraintsRequest(cases=[case]))
+        self.asks('constraints of a trajectory of 20,000 points', 'evaluate_constraints', cases=[case])
 
 
 if __name__ == '__main__':

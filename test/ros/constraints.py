@@ -4,42 +4,36 @@
 import math
 
 from curve_proximity.msg import ConstraintQuery
-from curve_proximity.srv import EvaluateConstraints
 from geometry_msgs.msg import Pose
-from helpers import Case, Server, bezier, box, mesh, plane, pose, run, service, sphere, thing
+from helpers import Case, Server, bezier, box, mesh, plane, pose, run, sphere, thing
 
 CURVES = 'curve_proximity/CurveDistance'
 
 
-def query(a=None, b=None, curve=None, providers=(), name='case'):
-    asked = ConstraintQuery(id=name, providers=list(providers))
-    if a is not None:
-        asked.a = a
-    if b is not None:
-        asked.b = b
-    if curve is not None:
-        asked.curve = curve
-    return asked
+def query(*sides, providers=(), name='case', **fields):
+    """sides: a, b and the curve."""
+    return ConstraintQuery(id=name, providers=list(providers), **dict(zip(('a', 'b', 'curve'), sides)), **fields)
 
 
 class Constraints(Case):
     @classmethod
     def setUpClass(cls):
         cls.server = Server()
-        cls.service = service('evaluate_constraints', EvaluateConstraints)
+
+    def ask(self, *cases):
+        return self.server.ask('evaluate_constraints', cases=list(cases))
 
     def rows(self, *cases):
-        response = self.succeeded(self.service(cases=list(cases)))
+        response = self.succeeded(self.ask(*cases))
         self.assertEqual(response.frame_id, 'world')
         return response.results
 
     def row(self, *arguments, **fields):
-        rows = self.rows(query(*arguments, **fields))
-        self.assertEqual(len(rows), 1)
-        return rows[0]
+        row, = self.rows(query(*arguments, **fields))
+        return row
 
     def refused(self, *arguments, **fields):
-        response = self.service(cases=[query(*arguments, **fields)])
+        response = self.ask(query(*arguments, **fields))
         self.assertFalse(response.success)
         self.assertEqual(response.results[0].status, 'invalid')
         self.assertTrue(math.isnan(response.results[0].value))
@@ -50,8 +44,7 @@ class Constraints(Case):
         line = bezier((-1, 0, 1), (3, 0, 1), radius=0.1)
         row = self.row(b=sphere('', 0.25, (1, 0, 0)), curve=line, providers=[CURVES])
         self.assertAlmostEqual(row.value, 0.65, delta=1e-8)
-        self.assertLessEqual(row.lower, 0.65 + 1e-15)
-        self.assertGreaterEqual(row.upper, 0.65 - 1e-15)
+        self.assertHolds(row.lower, row.upper, 0.65, math.inf, 1e-15)
         self.assertTrue(row.valid, row.message)
         self.assertAlmostEqual(row.t, 0.5, delta=1e-6)
         self.assertEqual([round(v.z, 6) for v in row.gradient_points], [0.5, 0.5])
@@ -69,19 +62,14 @@ class Constraints(Case):
         self.server.replace(sphere('ball', 0.25, (1, 0, 0)), box('shelf', (1, 1, 1), (0, 9, 0), padding=0.1))
         row = self.row(a=sphere('', 0.25, (0, 0, 0)), b=thing('ball', (0, 0, 0)), providers=['pairs'])
         self.assertLess(row.value, 0.0)  # placed at the origin by the request
-        there = thing('ball')
-        there.pose = Pose()
-        row = self.row(a=sphere('', 0.25, (3, 0, 0)), b=there, providers=['pairs'])
+        row = self.row(a=sphere('', 0.25, (3, 0, 0)), b=thing('ball', pose=Pose()), providers=['pairs'])
         self.assertAlmostEqual(row.value, 1.5, delta=1e-8)
-        named = thing('shelf')
-        named.pose = Pose()
-        row = self.row(b=named, curve=bezier((-1, 7, 0), (1, 7, 0)), providers=[CURVES])
+        row = self.row(b=thing('shelf', pose=Pose()), curve=bezier((-1, 7, 0), (1, 7, 0)), providers=[CURVES])
         self.assertAlmostEqual(row.value, 1.4, delta=1e-8)
 
     def test_what_is_fitted_has_an_interval_round_the_true_distance(self):
         row = self.row(a=box('', (0.4, 0.4, 0.4)), b=box('', (0.6, 0.6, 0.6), (2, 0, 0)), providers=['pairs'])
-        self.assertLessEqual(row.lower, 1.5)
-        self.assertGreaterEqual(row.upper, 1.5)
+        self.assertHolds(row.lower, row.upper, 1.5, math.inf, 0)
         self.assertLess(row.lower, row.value + 1e-12)
 
     def test_a_gap_says_clear_only_where_it_is(self):
@@ -100,7 +88,7 @@ class Constraints(Case):
         self.assertAlmostEqual(row.gradient_b.linear.y, 1.0)
 
     def test_without_names_those_that_apply_are_asked_and_those_that_fail_do_not_spoil_the_others(self):
-        response = self.service(cases=[query(sphere('', 0.5), sphere('', 0.5, (0.6, 2, 0)))])
+        response = self.ask(query(sphere('', 0.5), sphere('', 0.5, (0.6, 2, 0))))
         self.assertFalse(response.success)
         rows = {row.provider: row for row in response.results}
         self.assertEqual(len(rows), 7)
@@ -120,10 +108,9 @@ class Constraints(Case):
     def test_wrong_cases_are_told_by_name_and_the_others_are_answered(self):
         good = query(sphere('', 0.5), sphere('', 0.5, (0, 3, 0)), providers=['pairs'], name='good')
         bad = query(sphere('', -0.5), sphere('', 0.5), providers=['pairs'], name='bad')
-        response = self.service(cases=[good, bad, good])
-        self.assertFalse(response.success)
+        response = self.ask(good, bad, good)
+        self.assertRefused(response, "case 1 ('bad')")
         self.assertEqual([row.status for row in response.results], ['ok', 'invalid', 'ok'])
-        self.assertIn("case 1 ('bad')", response.message)
         self.assertIn('a: shape 0: sphere', response.results[1].message)
 
         ball = sphere('', 0.5)
@@ -132,24 +119,21 @@ class Constraints(Case):
         self.assertIn('no shape', self.refused(ball, providers=['pairs']))
         self.assertIn('nowhere', self.refused(sphere('', 0.5, frame='nowhere'), ball, providers=['pairs']))
         self.assertIn('halfspace', self.refused(ball, plane('', (0, 0, 1, 0)), providers=['gap']))
-        self.assertIn('identity', self.refused(sphere('', 0.5, (1, 0, 0)), ball, bezier((0, 0, 1), (1, 0, 1)), [CURVES]))
+        self.assertIn('identity', self.refused(sphere('', 0.5, (1, 0, 0)), ball, bezier((0, 0, 1), (1, 0, 1)), providers=[CURVES]))
         self.assertIn('basis', self.refused(b=ball, curve=bezier((0, 0, 1), (1, 0, 1), basis='catmull'), providers=[CURVES]))
         self.assertIn('finite', self.refused(ball, sphere('', 0.5, (float('nan'), 0, 0)), providers=['pairs']))
         self.assertIn('padding', self.refused(ball, sphere('', 0.5, padding=-1.0), providers=['pairs']))
-        turned = sphere('', 0.5)
-        turned.pose = pose((1, 0, 0), (0, 0, 0, 0))
-        self.assertIn('norm is 0', self.refused(ball, turned, providers=['pairs']))
+        self.assertIn('norm is 0', self.refused(ball, sphere('', 0.5, pose=pose((1, 0, 0), (0, 0, 0, 0))), providers=['pairs']))
         self.assertIn('triangle', self.refused(ball, mesh('', [(0, 0, 0)], [(0, 1, 2)]), providers=['pairs']))
 
     def test_more_than_the_limits_is_refused(self):
         ball = sphere('', 0.5)
-        self.assertRefused(self.service(cases=[query(ball, ball, providers=['pairs'])] * 1001), '~max_curves')
-        self.assertEqual(self.service(cases=[]).results, [])
+        self.assertRefused(self.ask(*[query(ball, ball, providers=['pairs'])] * 1001), '~max_curves')
+        self.assertEqual(self.ask().results, [])
 
     def test_many_cases_of_one_pair_are_answered_in_one_call(self):
-        cases = [query(box('', (0.4, 0.5, 0.6)), box('', (0.3, 0.3, 0.3), (0.3 + 0.001 * i, 0, 0)), providers=['gap'])
-                 for i in range(500)]
-        rows = self.rows(*cases)
+        rows = self.rows(*[query(box('', (0.4, 0.5, 0.6)), box('', (0.3, 0.3, 0.3), (0.3 + 0.001 * i, 0, 0)), providers=['gap'])
+                           for i in range(500)])
         self.assertEqual(len(rows), 500)
         self.assertTrue(all(row.status == 'ok' for row in rows))
 
@@ -181,8 +165,8 @@ class WrongProviders(Case):
         self.assertIn("constraint provider 'mine' (faulty_provider/NoLibrary) failed to load", node.output())
 
     def test_without_providers_the_service_says_so(self):
-        self.begin('bare', constraint_providers=[])
-        self.assertRefused(service('evaluate_constraints', EvaluateConstraints, '/bare')(cases=[query()]), '~constraint_providers')
+        _, server = self.begin('bare', constraint_providers=[])
+        self.assertRefused(server.ask('evaluate_constraints', cases=[query()]), '~constraint_providers')
 
 
 if __name__ == '__main__':

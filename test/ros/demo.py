@@ -6,9 +6,8 @@ import os
 import subprocess
 import sys
 import tempfile
-import unittest
 
-from helpers import Drawings, Server, bezier, box, joint_trajectory, joints, run, sphere, until
+from helpers import Case, Drawings, Server, bezier, box, joint_trajectory, joints, run, sphere, until
 from draw_legend import clearance_colour  # helpers has put scripts/ on the path
 from visualization_msgs.msg import Marker
 
@@ -17,7 +16,7 @@ READY = dict(panda_joint1=0.0, panda_joint2=-0.785, panda_joint3=0.0, panda_join
 LINE = bezier((0.9, -0.5, 0.3), (0.9, 0.0, 0.8), (0.9, 0.5, 0.3), id='pass')
 
 
-class Demo(unittest.TestCase):
+class Demo(Case):
     @classmethod
     def setUpClass(cls):
         cls.server = Server()
@@ -58,8 +57,7 @@ class Demo(unittest.TestCase):
         names = [n for n in READY if n.startswith('panda_joint')]
         trajectory = joint_trajectory(names, *[[state[n] for n in names] for state in (READY, dict(READY, panda_joint1=1.0))], times=(0, 2))
         drawn = Drawings()
-        response = self.server.distance([], trajectory=trajectory, joint_state=joints(panda_finger_joint1=0.035))
-        self.assertTrue(response.success, response.message)
+        self.succeeded(self.server.distance([], trajectory=trajectory, joint_state=joints(panda_finger_joint1=0.035)))
         shown = drawn.shown(lambda s: True, 'robot', 'swept', 'sweep')
         links = shown['robot']
         self.assertEqual(len(links), 11)

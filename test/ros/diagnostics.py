@@ -7,11 +7,10 @@ import rospy
 from curve_proximity.msg import Curve
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from dynamic_reconfigure.client import Client
-from helpers import Case, Server, bezier, cloud, ring_and_shells, run, sphere, status_of, transform
+from helpers import LINE, Case, Server, bezier, cloud, ring_and_shells, run, sphere, status_of, transform
 from sensor_msgs.msg import PointCloud2
 from tf2_msgs.msg import TFMessage
 
-LINE = bezier((-1, 0, 1), (1, 0, 1))
 ONLY_OBJECTS = dict(objects=['ball'])
 
 

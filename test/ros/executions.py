@@ -2,19 +2,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Errors of an execution, limits of the speed, margins, swept volumes and link pairs by service, against the library's answers."""
 import math
-import os
 
 import cprox
 import numpy
 import rospy
 from curve_proximity.msg import Body, CollisionObject, ExecutionErrors
-from curve_proximity.srv import (ClearanceProfile, ClearanceProfileRequest, LimitSpeed, LimitSpeedRequest, ListLinkPairs,
-                                 ListLinkPairsRequest, ListMargins, ListMarginsRequest, SweepVolume, SweepVolumeRequest,
-                                 TimeOfContact, TimeOfContactRequest)
-from helpers import Case, Server, bezier, cloud, joint_trajectory, joints, query, run, service, sphere, thing, until
+from helpers import ARM, Case, Server, bezier, cloud, joint_trajectory, joints, query, run, sphere, thing, until
 from sensor_msgs.msg import PointCloud2
 
-URDF = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'data', 'arm.urdf')
 QUARTER = joint_trajectory(['turn'], [0.0], [math.pi / 2])  # in a second
 BALL = (0.4, 0.9, 0.5)
 ERRORS = {'every_joint': {'tracking': 0.01, 'speed': 0.02}, 'base': {'position': 0.002, 'rotation': 0.003},
@@ -31,11 +26,8 @@ class Executions(Case):
     @classmethod
     def setUpClass(cls):
         cls.server = Server()
-        cls.services = {name: service(name, kind) for name, kind in (
-            ('time_of_contact', TimeOfContact), ('clearance_profile', ClearanceProfile), ('speed_limits', LimitSpeed),
-            ('margins', ListMargins), ('swept_volume', SweepVolume), ('collision_matrix', ListLinkPairs))}
         assert until(lambda: cls.server.distance([], trajectory=QUARTER).success, 20)
-        cls.robot = cprox.Robot.from_urdf(URDF)
+        cls.robot = cprox.Robot.from_urdf(ARM)
 
     def setUp(self):
         self.server.replace(sphere('ball', 0.2, BALL))
@@ -43,72 +35,64 @@ class Executions(Case):
         self.scene.add('ball', 'sphere', [0.2], cprox.transform(BALL))
         self.motion = cprox.Motion(self.scene, ['turn'], [0.0, 1.0], [[0.0], [math.pi / 2]])
 
-    def call(self, name, request):
-        return self.services[name](request)
-
-    def good(self, response, field):
-        self.assertTrue(response.success, response.message)
-        return getattr(response, field)
-
     def test_a_verdict_and_its_scale_hold_for_every_execution(self):
         for delta in (0.0, 0.05, 0.1):
             expected = self.motion.robust(ERRORS, delta=delta)
-            row, = self.good(self.server.tolerance([], delta, trajectory=QUARTER, errors=errors()), 'results')
+            row = self.row(self.server.tolerance([], delta, trajectory=QUARTER, errors=errors()))
             self.assertEqual((row.verdict, row.b), (expected['result'].verdict, expected['b']))
             self.assertEqual((row.certified_scale, row.refused_scale), (expected['certified_scale'], expected['refused_scale']))
             self.assertEqual((row.lower, row.upper), (expected['result'].lower, expected['result'].upper))
-            plain, = self.good(self.server.tolerance([], delta, trajectory=QUARTER), 'results')
+            plain = self.row(self.server.tolerance([], delta, trajectory=QUARTER))
             self.assertTrue(math.isnan(plain.certified_scale) and math.isnan(plain.refused_scale))
         least = min(self.motion.robust_profile([0.0, 1.0], ERRORS)['lower'])
-        row, = self.good(self.server.distance([], trajectory=QUARTER, errors=errors()), 'results')
+        row = self.row(self.server.distance([], trajectory=QUARTER, errors=errors()))
         self.assertEqual((row.verdict, math.isnan(row.certified_scale)), ('', True))
         self.assertAlmostEqual(row.lower, least, delta=2e-6)
 
     def test_errors_of_one_joint_take_the_place_of_those_of_all(self):
         own = dict(ERRORS, joints={'turn': {'tracking': 0.05}})
         expected = self.motion.robust(own, delta=0.05)
-        row, = self.good(self.server.tolerance([], 0.05, trajectory=QUARTER, errors=errors(joints=['turn'], joint_tracking=[0.05])), 'results')
+        row = self.row(self.server.tolerance([], 0.05, trajectory=QUARTER, errors=errors(joints=['turn'], joint_tracking=[0.05])))
         self.assertEqual((row.lower, row.certified_scale), (expected['result'].lower, expected['certified_scale']))
 
     def test_the_robot_against_itself_has_a_row_with_its_scale(self):
         expected = self.motion.robust(ERRORS, self_collision=True)
-        _, row = self.good(self.server.collision([], trajectory=QUARTER, errors=errors(), self_collision=True), 'results')
+        _, row = self.succeeded(self.server.collision([], trajectory=QUARTER, errors=errors(), self_collision=True)).results
         self.assertEqual((row.kind, row.verdict, row.certified_scale), ('self', expected['result'].verdict, expected['certified_scale']))
 
     def test_profiles_and_times_of_contact_hold_for_every_execution(self):
-        profile, = self.good(self.call('clearance_profile', ClearanceProfileRequest(query=query(trajectory=QUARTER, errors=errors()), intervals=8)),
-                             'profiles')
+        profile, = self.succeeded(self.server.ask('clearance_profile', query=query(trajectory=QUARTER, errors=errors()), intervals=8)).profiles
         expected = self.motion.robust_profile(numpy.linspace(0, 1, 9), ERRORS)
         self.assertEqual(list(profile.lower), list(expected['lower']))
         self.assertAlmostEqual(profile.summary.lower, min(expected['lower']), delta=2e-6)
 
         near = (0.0, 0.5, 0.5)
         self.server.replace(sphere('ball', 0.1, near))
-        plain, = self.good(self.call('time_of_contact', TimeOfContactRequest(query=query(trajectory=QUARTER))), 'results')
-        row, = self.good(self.call('time_of_contact', TimeOfContactRequest(query=query(trajectory=QUARTER, errors=errors()))), 'results')
+        plain = self.row(self.server.ask('time_of_contact', query=query(trajectory=QUARTER)))
+        row = self.row(self.server.ask('time_of_contact', query=query(trajectory=QUARTER, errors=errors())))
         self.assertEqual((plain.verdict, row.verdict), ('violated', 'violated'))
         self.assertLess(row.t_contact_lower, plain.t_contact_lower - 0.01)  # late by .01 s, and off by joints and places
         self.assertGreater(row.t_contact_lower, 0.5)
 
     def test_limits_of_the_speed_are_those_of_the_library(self):
-        asked = LimitSpeedRequest(query=query(trajectory=QUARTER, objects=['ball']), intervals=20, **PERSON)
-        limits, = self.good(self.call('speed_limits', asked), 'limits')
+        asked = dict(query=query(trajectory=QUARTER, objects=['ball']), intervals=20, **PERSON)
+        limits, = self.succeeded(self.server.ask('speed_limits', **asked)).limits
         constants = {'person': {'speed': 1.6}, 'robot': {'reaction_time': 0.05, 'stopping_time': 0.1}, 'intrusion': 0.02}
         expected = self.motion.speed_limits(constants, ['ball'], intervals=20)
         self.assertEqual(list(limits.overrides), list(expected['override']))
         self.assertEqual(list(limits.profile.lower), list(expected['lower']))
         self.assertEqual((limits.constant, limits.unwatched), (expected['constant_override'], expected['unwatched_override']))
         self.assertTrue(0 < limits.constant < 1, limits.constant)
-        asked.query.errors = errors()
-        slower, = self.good(self.call('speed_limits', asked), 'limits')
+        asked['query'].errors = errors()
+        slower, = self.succeeded(self.server.ask('speed_limits', **asked)).limits
         self.assertLess(slower.constant, limits.constant)
         for name in ('person_speed', 'reaction_time', 'stopping_time'):  # no default of these is safe
-            wrong = LimitSpeedRequest(query=query(trajectory=QUARTER, objects=['ball']), **dict(PERSON, **{name: 0.0}))
-            self.assertRefused(self.call('speed_limits', wrong), name)
-        self.assertRefused(self.call('speed_limits', LimitSpeedRequest(query=query(trajectory=QUARTER), **PERSON)), 'objects')
+            wrong = dict(query=query(trajectory=QUARTER, objects=['ball']), **dict(PERSON, **{name: 0.0}))
+            self.assertRefused(self.server.ask('speed_limits', **wrong), name)
+        self.assertRefused(self.server.ask('speed_limits', query=query(trajectory=QUARTER), **PERSON), 'objects')
 
     def test_margins_are_those_of_the_library(self):
-        margins, = self.good(self.call('margins', ListMarginsRequest(query=query(trajectory=QUARTER), delta=0.01, within=0.5)), 'margins')
+        margins, = self.succeeded(self.server.ask('margins', query=query(trajectory=QUARTER), delta=0.01, within=0.5)).margins
         expected = self.motion.margins(within=0.5, delta=0.01)
         self.assertEqual((margins.summary.verdict, len(margins.free)), ('clear', 7))
         for i, row in enumerate(expected):
@@ -117,8 +101,8 @@ class Executions(Case):
         self.assertIn(True, [0 < blocked < 0.5 for blocked in margins.blocked])
 
     def test_a_swept_volume_is_an_obstacle_that_only_the_motion_meets(self):
-        asked = SweepVolumeRequest(query=query(trajectory=QUARTER, links=['arm']), resolution=0.02, inside=True)
-        volume, = self.good(self.call('swept_volume', asked), 'volumes')
+        asked = dict(query=query(trajectory=QUARTER, links=['arm']), resolution=0.02, inside=True)
+        volume, = self.succeeded(self.server.ask('swept_volume', **asked)).volumes
         expected = self.motion.sweep(0.02, inside=True, links=['arm'])
         self.assertEqual((volume.summary.status, volume.outside_cells, volume.inside_cells, volume.gap),
                          ('ok', len(expected.cells), expected.inside.sum(), expected.gap))
@@ -130,19 +114,19 @@ class Executions(Case):
             beside = 0.1 + 1.01 * volume.gap + 0.01
             for radius, verdict in ((0.5, 'violated'), (0.5 + beside, 'clear'), (0.5 - beside, 'clear')):
                 x, y = radius * math.cos(angle), radius * math.sin(angle)
-                row, = self.good(self.server.collision(bezier((x, y, 0.5), (x, y, 0.501), radius=0.01), objects=['swept']), 'results')
+                row = self.row(self.server.collision(bezier((x, y, 0.5), (x, y, 0.501), radius=0.01), objects=['swept']))
                 self.assertEqual(row.verdict, verdict, (angle, radius))
 
     def test_a_swept_volume_that_is_not_finished_has_no_cells(self):
-        asked = SweepVolumeRequest(query=query(trajectory=QUARTER, links=['arm'], budget_ms=300.0), resolution=0.0025)
-        volume, = self.call('swept_volume', asked).volumes
+        asked = dict(query=query(trajectory=QUARTER, links=['arm'], budget_ms=300.0), resolution=0.0025)
+        volume, = self.server.ask('swept_volume', **asked).volumes
         self.assertEqual((volume.summary.status, volume.outside_cells, volume.gap, len(volume.outside.data)), ('stopped', 0, math.inf, 0))
         self.assertIn('budget_ms', volume.summary.message)
-        self.assertRefused(self.call('swept_volume', SweepVolumeRequest(query=query(trajectory=QUARTER), resolution=1e-5)), 'GB')
-        self.assertRefused(self.call('swept_volume', SweepVolumeRequest(query=query(trajectory=QUARTER), resolution=-1.0)), 'resolution')
+        self.assertRefused(self.server.ask('swept_volume', query=query(trajectory=QUARTER), resolution=1e-5), 'GB')
+        self.assertRefused(self.server.ask('swept_volume', query=query(trajectory=QUARTER), resolution=-1.0), 'resolution')
 
     def test_pairs_of_links_are_those_of_the_library(self):
-        pairs = self.good(self.call('collision_matrix', ListLinkPairsRequest()), 'pairs')
+        pairs = self.succeeded(self.server.ask('collision_matrix')).pairs
         expected = self.robot.collision_matrix()
         self.assertEqual(len(pairs), 3)
         for pair, row in zip(pairs, expected):
@@ -150,10 +134,10 @@ class Executions(Case):
                              (row['a'], row['b'], row['contact'], row['adjacent'], row['lower'], row['upper'], row['posture']))
         self.assertEqual({(pair.a, pair.b): pair.contact for pair in pairs},  # both slide or turn at heights of their own
                          {('arm', 'base'): 'never', ('arm', 'slider'): 'never', ('base', 'slider'): 'never'})
-        self.assertEqual(len(self.good(self.call('collision_matrix', ListLinkPairsRequest(links=['slider'])), 'pairs')), 2)
-        self.assertRefused(self.call('collision_matrix', ListLinkPairsRequest(links=['slidr'])), 'slider')
-        self.assertRefused(self.call('collision_matrix', ListLinkPairsRequest(epsilon=-1.0)), 'epsilon')
-        late = self.good(self.call('collision_matrix', ListLinkPairsRequest(budget_ms=1e-6)), 'pairs')
+        self.assertEqual(len(self.succeeded(self.server.ask('collision_matrix', links=['slider'])).pairs), 2)
+        self.assertRefused(self.server.ask('collision_matrix', links=['slidr']), 'slider')
+        self.assertRefused(self.server.ask('collision_matrix', epsilon=-1.0), 'epsilon')
+        late = self.succeeded(self.server.ask('collision_matrix', budget_ms=1e-6)).pairs
         self.assertEqual({pair.contact for pair in late}, {'undecided'})
         self.assertIn('budget_ms', late[0].message)
 
@@ -162,9 +146,9 @@ class Executions(Case):
                          self.server.distance([], trajectory=QUARTER, errors=errors(), budget_ms=1e-6)):
             for row in response.results:
                 self.assertNotEqual(row.verdict, 'clear')
-        for name, request, field in (('margins', ListMarginsRequest(), 'margins'), ('speed_limits', LimitSpeedRequest(**PERSON), 'limits')):
-            request.query = query(trajectory=QUARTER, objects=['ball'], budget_ms=1e-6)
-            for found in getattr(self.call(name, request), field):
+        asked = query(trajectory=QUARTER, objects=['ball'], budget_ms=1e-6)
+        for name, fields, field in (('margins', {}, 'margins'), ('speed_limits', PERSON, 'limits')):
+            for found in getattr(self.server.ask(name, query=asked, **fields), field):
                 self.assertFalse(any(found.free) if field == 'margins' else any(found.overrides))
 
     def test_what_does_not_apply_is_said_in_one_line(self):
@@ -178,9 +162,9 @@ class Executions(Case):
         self.assertRefused(tolerance(trajectory=QUARTER, errors=[ExecutionErrors(tracking=-0.1)]), '-0.1')
         self.assertRefused(tolerance(trajectory=QUARTER, errors=[ExecutionErrors(sensor=math.nan)]), 'sensor')
         self.assertRefused(self.server.distance([], trajectory=QUARTER, errors=errors(), gradient=True), 'errors', 'gradient')
-        self.assertRefused(self.call('margins', ListMarginsRequest(query=query(trajectory=QUARTER), within=-1.0)), 'within')
-        self.assertRefused(self.call('margins', ListMarginsRequest(query=query(line, joint_state=joints(turn=0.0)))), 'margins', 'robot')
-        self.assertRefused(self.call('swept_volume', SweepVolumeRequest(query=query(line, joint_state=joints(turn=0.0)))), 'swept volumes', 'robot')
+        self.assertRefused(self.server.ask('margins', query=query(trajectory=QUARTER), within=-1.0), 'within')
+        self.assertRefused(self.server.ask('margins', query=query(line, joint_state=joints(turn=0.0))), 'margins', 'robot')
+        self.assertRefused(self.server.ask('swept_volume', query=query(line, joint_state=joints(turn=0.0))), 'swept volumes', 'robot')
 
     def test_what_is_not_known_leaves_nothing_certified_by_any_service(self):
         """What is dropped, left out or too old, on the way to each service: its status in each row, and no clear."""
@@ -195,27 +179,25 @@ class Executions(Case):
             self.assertTrue(server.apply(ball).success)
             self.publisher(f'/{name}/{said[0]}', said[1]).publish(said[2])
             self.assertTrue(until(lambda: server.tolerance([], 0.0, trajectory=QUARTER).results[0].status == status, 20), name)
-            self.expect_nothing_certified(name, status, asked)
+            self.expect_nothing_certified(server, name, status, asked)
 
-    def expect_nothing_certified(self, name, status, asked):
-        def call(which, kind, **fields):
-            return service(which, kind, '/' + name)(kind._request_class(query=query(**asked), **fields))
-        row, = Server('/' + name).tolerance([], 0.0, errors=errors(), **asked).results
+    def expect_nothing_certified(self, server, name, status, asked):
+        def call(which, **fields):
+            return server.ask(which, query=query(**asked), **fields)
+        row, = server.tolerance([], 0.0, errors=errors(), **asked).results
         self.assertEqual((row.status, row.verdict, row.lower, row.certified_scale), (status, 'undecided', 0.0, 0.0), name)
-        margins, = call('margins', ListMargins).margins
+        margins, = call('margins').margins
         self.assertEqual((margins.summary.status, margins.summary.verdict, set(margins.free)), (status, 'undecided', {0.0}), name)
-        for limits in call('speed_limits', LimitSpeed, **PERSON).limits if 'objects' in asked else []:  # it asks for names
+        for limits in call('speed_limits', **PERSON).limits if 'objects' in asked else []:  # it asks for names
             self.assertEqual((limits.profile.summary.status, set(limits.overrides), limits.constant), (status, {0.0}, 0.0), name)
-        volume, = call('swept_volume', SweepVolume, resolution=0.05).volumes
+        volume, = call('swept_volume', resolution=0.05).volumes
         self.assertEqual(volume.summary.status, 'ok', name)  # objects do not matter to it
 
     def test_joints_that_nobody_has_said_leave_nothing_certified(self):
         asked = dict(trajectory=joint_trajectory(['trn'], [0.0], [1.0]))
         self.assertRefused(self.server.tolerance([], 0.0, errors=errors(), **asked), 'trn')
-        for name, request in (('margins', ListMarginsRequest()), ('swept_volume', SweepVolumeRequest()),
-                              ('speed_limits', LimitSpeedRequest(**PERSON))):
-            request.query = query(objects=['ball'] if name == 'speed_limits' else [], **asked)
-            self.assertRefused(self.call(name, request), 'trn')
+        for name, objects, fields in (('margins', [], {}), ('swept_volume', [], {}), ('speed_limits', ['ball'], PERSON)):
+            self.assertRefused(self.server.ask(name, query=query(objects=objects, **asked), **fields), 'trn')
 
 
 if __name__ == '__main__':

@@ -21,9 +21,8 @@ import rosgraph
 import rospy
 import rostest
 import rosunit.xmlrunner
+from curve_proximity import srv
 from curve_proximity.msg import Body, CollisionObject, Curve, Hyperquadric, PoseTrajectory, ProximityQuery, Waypoint
-from curve_proximity.srv import (ApplyScene, ApplySceneRequest, Collision, CollisionRequest, Distance,
-                                 DistanceRequest, GetScene, Tolerance, ToleranceRequest)
 from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion, Transform, TransformStamped, Vector3
 from nav_msgs.msg import Path
 from rosgraph.network import parse_http_host_and_port as host_and_port  # of services, too
@@ -38,6 +37,7 @@ sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '
 from free_port import free_port  # noqa: E402,F401 (for the tests that start masters)
 
 BOX, SPHERE, CYLINDER, CONE = 1, 2, 3, 4
+ARM = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'data', 'arm.urdf')
 
 
 class ActionClient(actionlib.SimpleActionClient):
@@ -101,6 +101,9 @@ def bezier(*points, **fields):
     for name, value in fields.items():
         setattr(curve, name, value)
     return curve
+
+
+LINE = bezier((-1, 0, 1), (1, 0, 1))
 
 
 def bspline(points, degree, knots=None, **fields):
@@ -226,35 +229,42 @@ def free_flight(name, *points, times=None, orientations=None):
         for at, turn, t in zip(points, orientations or itertools.repeat(turned(0)), times or itertools.count())])
 
 
-def service(name, kind, node='/curve_proximity', persistent=True, timeout=20.0):
-    rospy.wait_for_service(node + '/' + name, timeout)
-    return rospy.ServiceProxy(node + '/' + name, kind, persistent=persistent)
+SERVICES = {'distance': srv.Distance, 'tolerance': srv.Tolerance, 'collision': srv.Collision, 'violations': srv.ListViolations,
+            'clearance_profile': srv.ClearanceProfile, 'nearest_pairs': srv.NearestPairs, 'time_of_contact': srv.TimeOfContact,
+            'measure_pairs': srv.MeasurePairs, 'evaluate_constraints': srv.EvaluateConstraints, 'speed_limits': srv.LimitSpeed,
+            'margins': srv.ListMargins, 'swept_volume': srv.SweepVolume, 'collision_matrix': srv.ListLinkPairs,
+            'apply_scene': srv.ApplyScene, 'get_scene': srv.GetScene}
 
 
 class Server:
-    """The services of one node, by persistent connections unless told otherwise."""
+    """The services of one node, by persistent connections."""
 
-    def __init__(self, name='/curve_proximity', persistent=True, timeout=20.0):
-        def connect(which, kind):
-            return service(which, kind, name, persistent, timeout)
+    def __init__(self, name='/curve_proximity', timeout=20.0):
+        self._name, self._timeout, self._services = name, timeout, {}
+        for which in ('distance', 'tolerance', 'collision', 'apply_scene', 'get_scene'):
+            self._connect(which)
 
-        self._distance = connect('distance', Distance)
-        self._tolerance = connect('tolerance', Tolerance)
-        self._collision = connect('collision', Collision)
-        self._apply = connect('apply_scene', ApplyScene)
-        self._get = connect('get_scene', GetScene)
+    def _connect(self, which):
+        rospy.wait_for_service(self._name + '/' + which, self._timeout)
+        self._services[which] = rospy.ServiceProxy(self._name + '/' + which, SERVICES[which], persistent=True)
+
+    def ask(self, which, **fields):
+        """The answer of a service; fields: of the request."""
+        if which not in self._services:
+            self._connect(which)
+        return self._services[which](**fields)
 
     def distance(self, curves, **fields):
-        return self._distance(DistanceRequest(query(curves, **fields)))
+        return self.ask('distance', query=query(curves, **fields))
 
     def tolerance(self, curves, delta, **fields):
-        return self._tolerance(ToleranceRequest(query(curves, **fields), delta))
+        return self.ask('tolerance', query=query(curves, **fields), delta=delta)
 
     def collision(self, curves, **fields):
-        return self._collision(CollisionRequest(query(curves, **fields)))
+        return self.ask('collision', query=query(curves, **fields))
 
     def apply(self, *objects, **fields):
-        return self._apply(ApplySceneRequest(objects=list(objects), **fields))
+        return self.ask('apply_scene', objects=list(objects), **fields)
 
     def replace(self, *objects, **fields):
         """The scene holds these objects and nothing else."""
@@ -263,7 +273,7 @@ class Server:
         return response
 
     def scene(self, *ids):
-        return self._get(list(ids))
+        return self.ask('get_scene', ids=list(ids))
 
 
 def header(**fields):
@@ -365,7 +375,7 @@ def resident_mb(pid, shadow=False):
 
 def request_of_points(data):
     """The bytes of a request of ~apply_scene for one body of points; data: theirs, 24 each. No message of all of them is made."""
-    texts = [serialized(ApplySceneRequest(objects=[body('big', 'points', vertices=[(0, 0, 0)] * n)])) for n in (0, 1)]
+    texts = [serialized(srv.ApplySceneRequest(objects=[body('big', 'points', vertices=[(0, 0, 0)] * n)])) for n in (0, 1)]
     at = next(i for i, (a, b) in enumerate(zip(*texts)) if a != b)  # where their count stands: what one more changes first
     return texts[0][:at] + struct.pack('<I', len(data) // 24) + data + texts[0][at + 4:]
 

@@ -12,8 +12,8 @@ import time
 
 import rospy
 from curve_proximity.msg import CollisionObject
-from helpers import Case, Node, Server, connected, joint_trajectory, joints, run, sphere, thing, until
-from known import ARM, seen, written
+from helpers import ARM, Case, Node, Server, connected, joint_trajectory, joints, run, sphere, thing, until
+from known import seen, written
 from sensor_msgs.msg import JointState, PointCloud2
 
 NAME, MAX_AGE, LIMIT, RADIUS, POINT = 'history', 1.0, 0.05, 0.1, 0.01

@@ -7,17 +7,15 @@ import os
 import random
 import socket
 import struct
-import unittest
 
 import rosgraph
 from curve_proximity.msg import ProximityQuery
 from curve_proximity.srv import Distance, DistanceRequest
-from helpers import Node, Server, bezier, framed, handshake, header, host_and_port, run, serialized, sphere
+from helpers import LINE, Case, Server, framed, handshake, header, host_and_port, run, serialized, sphere
 
 CONNECTIONS = int(os.environ.get('CURVE_PROXIMITY_HOSTILE', 300))
 MEMORY_MB = 2048
 SEED = 20240607
-LINE = bezier((-1, 0, 1), (1, 0, 1))
 
 
 def target_handshake(**fields):
@@ -92,19 +90,15 @@ class Attacker:
         connection.close()
 
 
-class Hostile(unittest.TestCase):
+class Hostile(Case):
     def setUp(self):
-        self.node = Node('hostile_target', memory_limit_mb=MEMORY_MB)
-        self.addCleanup(self.node.end)
-        self.server = Server('/hostile_target')
-        self.server.replace(sphere('ball', 0.25))
+        self.node, server = self.begin('hostile_target', memory_limit_mb=MEMORY_MB)
+        server.replace(sphere('ball', 0.25))
         self.attacker = Attacker(SEED)
 
     def assertAnswers(self, after):
         self.assertTrue(self.node.alive(), 'the node died after %s: %s' % (after, self.node.output()[-2000:]))
-        response = Server('/hostile_target').distance(LINE)
-        self.assertTrue(response.success, response.message)
-        self.assertAlmostEqual(response.results[0].upper, 0.75, delta=2e-6)
+        self.assertAlmostEqual(self.row(Server('/hostile_target').distance(LINE)).upper, 0.75, delta=2e-6)
 
     def test_hostile_connections_are_survived(self):
         kinds = self.attacker.kinds()

@@ -10,10 +10,8 @@ import rosgraph
 import rospy
 from curve_proximity.msg import Curve
 from curve_proximity.srv import ApplyScene, Distance, Tolerance, ToleranceResponse
-from helpers import Call, Case, Server, bezier, raw_call, request_of_points, resident_mb, ring_and_shells, run, sphere
+from helpers import LINE, Call, Case, Server, raw_call, request_of_points, resident_mb, ring_and_shells, run, sphere
 from nodelet.srv import NodeletList, NodeletLoad, NodeletUnload
-
-LINE = bezier((-1, 0, 1), (1, 0, 1))
 
 
 class Nodelet(Case):

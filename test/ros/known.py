@@ -10,18 +10,15 @@ import time
 
 import rospy
 from curve_proximity.msg import AttachedCollisionObject, CollisionObject, ConstraintQuery, ProximityResults, RobotTrajectory
-from curve_proximity.srv import EvaluateConstraints
 from dynamic_reconfigure.client import Client as Reconfigure
 from foreign_types import moveit
 from geometry_msgs.msg import PoseStamped
-from helpers import (Case, Node, Server, bezier, cloud, joint_trajectory, joints, pose, run, service, sphere, thing,
+from helpers import (ARM, LINE, Case, Node, Server, bezier, cloud, joint_trajectory, joints, pose, run, sphere, thing,
                      transform, until)
 from sensor_msgs.msg import JointState, PointCloud2
 from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage
 
-LINE = bezier((-1, 0, 1), (1, 0, 1))
-ARM = os.path.dirname(os.path.abspath(__file__)) + '/data/arm.urdf'
 
 
 def written(path):
@@ -148,7 +145,9 @@ class Known(Case):
 
     def test_constraints_say_what_they_rest_on(self):
         _, server = self.begin('constrained', constraint_providers=['curve_proximity/CurveDistance'], max_age=0.5)
-        evaluate = service('evaluate_constraints', EvaluateConstraints, '/constrained')
+
+        def evaluate(**fields):
+            return server.ask('evaluate_constraints', **fields)
         transforms = self.publisher('/tf', TFMessage)
         scene = server.replace(sphere('ball', 0.25)).scene
         cases = [ConstraintQuery(id='fixed', b=CollisionObject(id='ball'), curve=LINE),
@@ -416,7 +415,6 @@ class Known(Case):
                        '<limit lower="-1" upper="1" effort="1" velocity="1"/></joint><link name="hand"/>')
         turning, whole = joint_trajectory(['turn'], (0.0,), (0.5,)), joint_trajectory(['turn', 'lift'], (0.0, 0.0), (0.5, 0.0))
         _, server = self.begin('untold', fixed_frame='base', constraint_providers=['curve_proximity/RobotDistance'])
-        evaluate = service('evaluate_constraints', EvaluateConstraints, '/untold')
         states = self.publisher('/untold/joint_states', JointState)
         server.replace(sphere('ball', 0.1, (0, 0, 9)))
 
@@ -424,7 +422,7 @@ class Known(Case):
             return self.row(server.tolerance(curves, 0.01, **fields))
 
         def constraint(**fields):
-            one, = evaluate(cases=[ConstraintQuery(**fields)]).results
+            one, = server.ask('evaluate_constraints', cases=[ConstraintQuery(**fields)]).results
             return one.status
         self.assertEqual(row(trajectory=whole, current_joints=True).verdict, 'clear')
         for fields in (dict(current_joints=True), {}, dict(joint_state=joints(turn=0.3))):

@@ -6,10 +6,8 @@ import math
 
 import rospy
 from curve_proximity.msg import AttachedCollisionObject, Body, CollisionObject, LinkPadding, ProximityResults, RobotTrajectory
-from curve_proximity.srv import (ClearanceProfile, ClearanceProfileRequest, ListViolations, ListViolationsRequest, NearestPairs,
-                                 NearestPairsRequest)
 from helpers import (Case, Drawings, Server, bezier, box, free_flight, heard, joint_trajectory, joints, moving, path, pose, query, run,
-                     service, sphere, turned, until, waypoint)
+                     sphere, turned, until, waypoint)
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from visualization_msgs.msg import Marker
 
@@ -35,9 +33,6 @@ class Movers(Case):
     @classmethod
     def setUpClass(cls):
         cls.server = Server()
-        cls.nearest = service('nearest_pairs', NearestPairs)
-        cls.profile = service('clearance_profile', ClearanceProfile)
-        cls.violations = service('violations', ListViolations)
         until(lambda: cls.server.distance([], robot_state=True, joint_state=joints(**READY)).success, 20)
 
     def setUp(self):
@@ -67,12 +62,12 @@ class Movers(Case):
             if 'curves' in asked:
                 self.server.replace(sphere('ball', 0.1, (0, 3, 2.5)))
             with self.subTest(movers='movers' in asked):
-                profile, = self.profile(ClearanceProfileRequest(query=query(**asked), intervals=3)).profiles
+                profile, = self.server.ask('clearance_profile', query=query(**asked), intervals=3).profiles
                 self.assertEqual(bytes(profile.summary.certificate)[:8], b'CPCP' + bytes((3, 0, 0, 0)), profile.summary.message)
-                found, = self.violations(ListViolationsRequest(query=query(**asked), delta=1.0)).violations
+                found, = self.server.ask('violations', query=query(**asked), delta=1.0).violations
                 self.assertTrue(found.summary.certificate.startswith(b'CPCP') and found.summary.problem_fingerprint,
                                 found.summary.message)
-                refused = self.nearest(NearestPairsRequest(query=query(**asked), count=3))
+                refused = self.server.ask('nearest_pairs', query=query(**asked), count=3)
                 self.assertIn('certificate does not apply', refused.message)
 
     def test_it_is_shown_at_the_moment_of_closest_approach(self):
@@ -276,13 +271,13 @@ class Movers(Case):
         whole, = self.server.distance([], **beside).results
         self.assertEqual(whole.b.split('/')[0], 'right')
 
-        profile, = self.profile(ClearanceProfileRequest(query=query(**beside), intervals=8)).profiles
+        profile, = self.server.ask('clearance_profile', query=query(**beside), intervals=8).profiles
         self.assertAlmostEqual(min(profile.lower), whole.lower, delta=2e-6)
         self.assertEqual((profile.t0[0], profile.t1[-1], profile.summary.b), (0.0, 2.0, whole.b))
         for i in range(8):
             a, b = profile.witness_a[i], profile.witness_b[i]
             self.assertAlmostEqual(math.dist((a.x, a.y, a.z), (b.x, b.y, b.z)), profile.lower[i], delta=3e-6)
-        links = self.profile(ClearanceProfileRequest(query=query(**beside), intervals=4, per_link=True)).profiles
+        links = self.server.ask('clearance_profile', query=query(**beside), intervals=4, per_link=True).profiles
         self.assertIn('panda_hand', [one.link for one in links])
         self.assertAlmostEqual(min(min(one.lower) for one in links), whole.lower, delta=2e-6)
 
@@ -292,7 +287,7 @@ class Movers(Case):
         row, = self.server.distance([], trajectory=swing(-0.8, 0.8, stamp=1000.0), objects=['ball']).results
         self.assertEqual((row.b, round(row.upper, 5)), ('ball', round(rows[1].upper, 5)))
 
-        pairs = self.nearest(NearestPairsRequest(query=query(**beside), count=5)).results
+        pairs = self.server.ask('nearest_pairs', query=query(**beside), count=5).results
         self.assertEqual(len(pairs), 5)
         self.assertEqual((pairs[0].a, pairs[0].b), (whole.a, whole.b))
         self.assertAlmostEqual(pairs[0].upper, whole.upper, delta=2e-6)

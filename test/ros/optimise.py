@@ -3,13 +3,10 @@
 """~evaluate_constraints about trajectories of the Panda: values, gradients by waypoints, and rows for optimisers."""
 import copy
 import math
-import unittest
 
 import rospy
-from curve_proximity.msg import CollisionObject, ConstraintQuery, RobotTrajectory, Waypoint
-from curve_proximity.srv import EvaluateConstraints
-from geometry_msgs.msg import Point, Pose, Quaternion
-from helpers import Server, bezier, box, joints, run, service, sphere
+from curve_proximity.msg import CollisionObject, ConstraintQuery, RobotTrajectory
+from helpers import Case, Server, bezier, box, joints, moving, pose, run, sphere, waypoint
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
@@ -29,22 +26,19 @@ def query(path, *providers, name='case', **fields):
     return ConstraintQuery(id=name, providers=list(providers), trajectory=path, **fields)
 
 
-class Optimise(unittest.TestCase):
+class Optimise(Case):
     @classmethod
     def setUpClass(cls):
         cls.server = Server()
-        cls.service = service('evaluate_constraints', EvaluateConstraints)
 
     def setUp(self):
         self.server.replace(box('table', (0.5, 1.2, 0.05), (0.6, 0, 0.1)), sphere('lamp', 0.12, (0.55, 0.25, 0.85)))
 
     def results(self, *cases):
-        response = self.service(cases=list(cases))
-        self.assertTrue(response.success, response.message)
-        return response.results
+        return self.succeeded(self.server.ask('evaluate_constraints', cases=list(cases))).results
 
     def refused(self, case):
-        response = self.service(cases=[case])
+        response = self.server.ask('evaluate_constraints', cases=[case])
         self.assertFalse(response.success)
         self.assertEqual(response.results[0].status, 'invalid')
         self.assertEqual(response.results[0].rows, [])
@@ -70,8 +64,7 @@ class Optimise(unittest.TestCase):
 
     def assertGradient(self, row, **fields):
         """Value and gradient are those of ~distance, which scene.test_motion_gradient holds against differences."""
-        response = self.server.distance([], trajectory=trajectory(), gradient=True, epsilon=1e-9, **fields)
-        self.assertTrue(response.success, response.message)
+        response = self.succeeded(self.server.distance([], trajectory=trajectory(), gradient=True, epsilon=1e-9, **fields))
         answer, gradient, (least,) = response.results[0], response.gradients[0], row.rows
         self.assertTrue(row.valid, row.message)
         self.assertAlmostEqual(row.value, answer.upper, delta=1e-8)
@@ -93,8 +86,7 @@ class Optimise(unittest.TestCase):
 
     def test_the_value_is_the_distance_that_the_node_answers(self):
         row, = self.results(query(trajectory(), 'scene'))
-        response = self.server.distance([], trajectory=trajectory())
-        answer = response.results[0]
+        answer = self.server.distance([], trajectory=trajectory()).results[0]
         self.assertAlmostEqual(row.value, answer.upper - 0.02, delta=1e-5)
         self.assertLessEqual(row.lower, answer.upper - 0.02)
         self.assertGreaterEqual(row.upper + 0.02, answer.lower)
@@ -119,10 +111,9 @@ class Optimise(unittest.TestCase):
 
     def test_among_what_moves_the_gradient_is_that_of_the_distance(self):
         """A lamp crosses the arm's way and a second Panda moves beside it."""
-        lamp = sphere('lamp', 0.12)
-        lamp.trajectory.waypoints = [Waypoint(t, Pose(Point(x, y, 0.7), Quaternion(0, 0, 0, 1))) for t, x, y in ((0.0, 0.4, 0.9), (1.6, 0.9, -0.3))]
+        lamp = moving(sphere('lamp', 0.12), waypoint(0, (0.4, 0.9, 0.7)), waypoint(1.6, (0.9, -0.3, 0.7)))
         second = RobotTrajectory(name='second', trajectory=trajectory(velocities=False))
-        second.base.pose = Pose(Point(1.6, 0.1, 0), Quaternion(0, 0, 1, 0))
+        second.base.pose = pose((1.6, 0.1, 0), (0, 0, 1, 0))
         for others in ([], [second]):
             self.server.replace(*([] if others else [lamp]))
             row, = self.results(query(trajectory(), 'exact', moving_robots=others))

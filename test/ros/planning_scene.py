@@ -5,13 +5,12 @@ import copy
 import math
 import subprocess
 import sys
-import unittest
 
 import rospy
 from curve_proximity.msg import AllowedContact, AttachedCollisionObject, LinkPadding, LinkScale, ProximityResults
 from diagnostic_msgs.msg import DiagnosticArray
 from foreign_types import GetPlanningScene, GetPlanningSceneResponse, moveit
-from helpers import Node, Server, bezier, box, bus_links, connected, heard, joint_trajectory, joints, mesh, pose, run, sphere, transform, until
+from helpers import Case, Server, bezier, box, bus_links, connected, heard, joint_trajectory, joints, mesh, pose, run, sphere, transform, until
 from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import JointState
 
@@ -85,7 +84,7 @@ def diff(*objects):
     return scene
 
 
-class PlanningScene(unittest.TestCase):
+class PlanningScene(Case):
     @classmethod
     def setUpClass(cls):
         cls.log, cls.statuses = [], {}
@@ -220,9 +219,7 @@ class PlanningScene(unittest.TestCase):
         self.send(diff(foreign(sphere('ball', .25), at=(0, 0, 2))), publisher, self.late)
         self.assertLogged('/late', 'diffs and no full scene')
         self.assertStatus('late', 1, 'no full scene')
-        response = self.late.distance(CURVES, objects=['ball'])
-        self.assertTrue(response.success, response.message)
-        self.assertIn('no full scene', ' '.join(response.warnings))
+        self.assertIn('no full scene', ' '.join(self.succeeded(self.late.distance(CURVES, objects=['ball'])).warnings))
         self.assertNotIn({'arm', 'slider'}, selves())    # the SRDF disables them
         self.send(full_scene(), publisher, self.late)
         self.assertIn({'arm', 'slider'}, selves())       # the matrix does not
@@ -266,9 +263,7 @@ class PlanningScene(unittest.TestCase):
         self.assertTrue(until(lambda: 'lost' in [thing.id for thing in self.follower.scene().objects], PATIENCE))
 
     def test_6b_a_scene_whose_move_group_has_died_is_unknown_until_one_answers_again(self):
-        node = Node('orphan', ask_planning_scene=True)
-        self.addCleanup(node.end)
-        server = Server('/orphan')
+        _, server = self.begin('orphan', ask_planning_scene=True)
         for _ in range(2):
             with subprocess.Popen([sys.executable, __file__, '--move-group', '/orphan/get_planning_scene']) as move_group:
                 self.addCleanup(move_group.kill)
@@ -283,7 +278,7 @@ class PlanningScene(unittest.TestCase):
         self.asking[topic].publish(message)
         found = until(lambda: [a for a in self.answers if a.source == topic and a.header.stamp == stamp], PATIENCE)
         self.assertTrue(found, 'no answer')
-        return found[0]
+        return self.succeeded(found[0])
 
     def assertSameRows(self, rows, expected):
         self.assertEqual([(r.kind, r.a, r.b, r.lower, r.upper) for r in rows],
@@ -298,7 +293,6 @@ class PlanningScene(unittest.TestCase):
         message = moveit.RobotTrajectory(joint_trajectory=copy.deepcopy(SWING))
         message.joint_trajectory.header.stamp = stamp
         answer = self.ask('robot_trajectory', message, stamp)
-        self.assertTrue(answer.success, answer.message)
         self.assertSameRows(answer.results, asked[0])
 
         # a joint that the robot does not have is left out
@@ -320,7 +314,6 @@ class PlanningScene(unittest.TestCase):
         shown.trajectory_start.joint_state = JointState(name=['turn'], position=[0.0])
         contacts = heard(NODE + '/contacts', moveit.ContactInformation)
         answer = self.ask('display_trajectory', shown, stamp)
-        self.assertTrue(answer.success, answer.message)
         self.assertSameRows(answer.results, asked[0] + asked[1])
         self.assertEqual({row.id for row in answer.results}, {'trajectory/0', 'trajectory/1'})
 
@@ -338,7 +331,6 @@ class PlanningScene(unittest.TestCase):
         stamp = rospy.Time(81)
         shown.trajectory[0].joint_trajectory.header.stamp = stamp
         answer = self.ask('display_trajectory', shown, stamp)
-        self.assertTrue(answer.success, answer.message)
         self.assertEqual({row.status for row in answer.results}, {'partial'})
         self.assertLessEqual(max(row.lower for row in answer.results), 0.0)
         self.assertIn("'pen' is not measured", ' '.join(answer.warnings))

@@ -5,18 +5,14 @@ are true is held against references of their own by the groups core and scene.""
 import copy
 import itertools
 import math
-import os
 
 import cprox
 import numpy
 import rospy
 from curve_proximity.msg import Clearance, Curve
-from curve_proximity.srv import (ClearanceProfile, ClearanceProfileRequest, ListViolations, ListViolationsRequest,
-                                 NearestPairs, NearestPairsRequest, TimeOfContact, TimeOfContactRequest)
-from helpers import Case, Server, bezier, bspline, heard, joint_trajectory, query, run, service, sphere, until
+from helpers import ARM, Case, Server, bezier, bspline, heard, joint_trajectory, query, run, sphere, until
 from trajectory_msgs.msg import JointTrajectory
 
-URDF = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'data', 'arm.urdf')
 LINE = [(-1, 0.2, 1), (0.1, 0.4, 0.5), (1, -0.3, 1.2)]
 THROUGH = [(-1, 0, 0.1), (1, 0, 0.1)]
 QUARTER = joint_trajectory(['turn'], [0.0], [math.pi / 2])  # in a second
@@ -34,11 +30,8 @@ class Questions(Case):
     @classmethod
     def setUpClass(cls):
         cls.server = Server()
-        cls.services = {request: service(name, kind) for name, kind, request in (
-            ('nearest_pairs', NearestPairs, NearestPairsRequest), ('time_of_contact', TimeOfContact, TimeOfContactRequest),
-            ('clearance_profile', ClearanceProfile, ClearanceProfileRequest), ('violations', ListViolations, ListViolationsRequest))}
         assert until(lambda: cls.server.distance([], trajectory=QUARTER).success, 20)
-        cls.robot = cprox.Robot.from_urdf(URDF)
+        cls.robot = cprox.Robot.from_urdf(ARM)
 
     def setUp(self):
         self.place(*BALLS)
@@ -52,15 +45,14 @@ class Questions(Case):
         self.alone = alone  # curves are asked about beside the objects
         self.motion = cprox.Motion(self.scene, ['turn'], [0.0, 1.0], [[0.0], [math.pi / 2]])
 
-    def ask(self, request, *curves, **fields):
+    def ask(self, which, *curves, **fields):
         of_query = {name: fields.pop(name) for name in ('self_collision', 'objects', 'per_object') if name in fields}
         trajectory = None if curves else QUARTER
         asked = [curve if isinstance(curve, Curve) else bezier(*curve) for curve in curves]
-        return self.services[request](request(query=query(asked, trajectory=trajectory, **of_query), **fields))
+        return self.server.ask(which, query=query(asked, trajectory=trajectory, **of_query), **fields)
 
     def good(self, response):
-        self.assertTrue(response.success, response.message)
-        return response.profiles if hasattr(response, 'profiles') else getattr(response, 'violations', None) or response.results
+        return getattr(self.succeeded(response), 'profiles', None) or getattr(response, 'violations', None) or response.results
 
     def curves(self, ask, *points, **fields):
         """What the library says of each curve, and the objects alone."""
@@ -77,14 +69,14 @@ class Questions(Case):
         objects = list(BALLS)
         for fields, options in (({}, {}), (dict(count=1), dict(k=1)), (dict(within=1.0), dict(within=1.0)), (dict(within=0.1), dict(within=0.1))):
             expected = self.curves(self.alone.nearest_pairs, LINE, THROUGH, **options)
-            self.assertRows(self.good(self.ask(NearestPairsRequest, LINE, THROUGH, objects=objects, **fields)), sum(expected, []))
+            self.assertRows(self.good(self.ask('nearest_pairs', LINE, THROUGH, objects=objects, **fields)), sum(expected, []))
             expected = self.motion.nearest_pairs(**options) + self.motion.nearest_pairs(self_collision=True, **options)
-            self.assertRows(self.good(self.ask(NearestPairsRequest, self_collision=True, **fields)), expected)
+            self.assertRows(self.good(self.ask('nearest_pairs', self_collision=True, **fields)), expected)
 
     def test_contact_is_never_said_too_late(self):
-        rows = self.good(self.ask(TimeOfContactRequest, LINE, THROUGH, objects=list(BALLS)))
+        rows = self.good(self.ask('time_of_contact', LINE, THROUGH, objects=list(BALLS)))
         expected = self.curves(self.alone.time_of_contact, LINE, THROUGH)
-        rows += self.good(self.ask(TimeOfContactRequest, self_collision=True))
+        rows += self.good(self.ask('time_of_contact', self_collision=True))
         expected += [self.motion.time_of_contact(self_collision=own) for own in (False, True)]
         self.assertRows(rows, expected)
         self.assertEqual([(row.verdict, row.t_contact_lower) for row in rows], [(e['result'].verdict, e['result'].t_contact_lower) for e in expected])
@@ -100,22 +92,22 @@ class Questions(Case):
 
     def test_a_profile_has_the_least_distance_of_each_interval(self):
         for fields, options in ((dict(intervals=8), {}), (dict(breaks=BREAKS), {}), (dict(intervals=8, horizon=0.6), dict(horizon=0.6))):
-            for profile, expected in zip(self.good(self.ask(ClearanceProfileRequest, LINE, THROUGH, objects=list(BALLS), **fields)),
+            for profile, expected in zip(self.good(self.ask('clearance_profile', LINE, THROUGH, objects=list(BALLS), **fields)),
                                          self.curves(self.alone.profile, LINE, THROUGH, breaks=BREAKS, **options)):
                 self.assertProfile(profile, expected)
-            profiles = self.good(self.ask(ClearanceProfileRequest, self_collision=True, per_link=True, **fields))
-            profiles += self.good(self.ask(ClearanceProfileRequest, self_collision=True, **fields))
+            profiles = self.good(self.ask('clearance_profile', self_collision=True, per_link=True, **fields))
+            profiles += self.good(self.ask('clearance_profile', self_collision=True, **fields))
             found = {(profile.summary.kind, profile.link): profile for profile in profiles}
             for kind, link in EVERY_LINK:
                 self.assertProfile(found[kind, link], self.motion.profile(BREAKS, self_collision=kind == 'self', links=[link] if link else [], **options))
-        self.assertEqual(len(self.good(self.ask(ClearanceProfileRequest, LINE, objects=['near']))[0].lower), 100)
+        self.assertEqual(len(self.good(self.ask('clearance_profile', LINE, objects=['near']))[0].lower), 100)
 
     def test_violations_begin_and_end_where_the_library_says(self):
         for delta, resolution in ((0.1, 1e-5), (0.3, 1e-3), (0.0, 1e-3)):
             asked = dict(delta=delta, resolution=resolution)
-            found = list(self.good(self.ask(ListViolationsRequest, LINE, THROUGH, objects=list(BALLS), **asked)))
+            found = list(self.good(self.ask('violations', LINE, THROUGH, objects=list(BALLS), **asked)))
             expected = self.curves(self.alone.violations, LINE, THROUGH, **asked)
-            found += self.good(self.ask(ListViolationsRequest, self_collision=True, **asked))
+            found += self.good(self.ask('violations', self_collision=True, **asked))
             expected += [self.motion.violations(self_collision=own, **asked) for own in (False, True)]
             for violations, of in zip(found, expected):
                 for name in ('enter_lower', 'enter_upper', 'leave_lower', 'leave_upper', 'verdict', 'upper', 't', 'b'):
@@ -186,36 +178,36 @@ class Questions(Case):
         self.assertGreater(told['curve'][0].header.stamp, rospy.Time(1001))  # the curve has no stamp: when it came
 
     def test_what_cannot_be_answered_is_refused_in_one_line(self):
-        for request, fields, *words in (
-                (NearestPairsRequest, dict(per_object=True), 'per_object'), (TimeOfContactRequest, dict(per_object=True), 'per_object'),
-                (ClearanceProfileRequest, dict(per_object=True), 'per_object'), (NearestPairsRequest, dict(within=-1.0), 'within'),
-                (NearestPairsRequest, dict(within=math.nan), 'within'), (NearestPairsRequest, dict(count=100000), 'max_results'),
-                (ClearanceProfileRequest, dict(intervals=4000000000), 'max_results'), (ClearanceProfileRequest, dict(horizon=-1.0), 'horizon'),
-                (ClearanceProfileRequest, dict(intervals=4, breaks=[0, 1]), 'intervals or breaks'), (ClearanceProfileRequest, dict(breaks=[0.5]), 'breaks'),
-                (ClearanceProfileRequest, dict(per_link=True), 'per_link'), (ListViolationsRequest, dict(delta=-1.0, objects=['ball']), 'delta'),
-                (ListViolationsRequest, dict(delta=0.1, resolution=math.nan, objects=['ball']), 'resolution'),
-                *[(ClearanceProfileRequest, dict(breaks=breaks, objects=['ball']), '1 of 1 rows') for breaks in ([0, 2], [0.5, 0.5], [0, math.nan])]):
-            self.assertRefused(self.ask(request, LINE, **fields), *words)
+        for which, fields, *words in (
+                ('nearest_pairs', dict(per_object=True), 'per_object'), ('time_of_contact', dict(per_object=True), 'per_object'),
+                ('clearance_profile', dict(per_object=True), 'per_object'), ('nearest_pairs', dict(within=-1.0), 'within'),
+                ('nearest_pairs', dict(within=math.nan), 'within'), ('nearest_pairs', dict(count=100000), 'max_results'),
+                ('clearance_profile', dict(intervals=4000000000), 'max_results'), ('clearance_profile', dict(horizon=-1.0), 'horizon'),
+                ('clearance_profile', dict(intervals=4, breaks=[0, 1]), 'intervals or breaks'), ('clearance_profile', dict(breaks=[0.5]), 'breaks'),
+                ('clearance_profile', dict(per_link=True), 'per_link'), ('violations', dict(delta=-1.0, objects=['ball']), 'delta'),
+                ('violations', dict(delta=0.1, resolution=math.nan, objects=['ball']), 'resolution'),
+                *[('clearance_profile', dict(breaks=breaks, objects=['ball']), '1 of 1 rows') for breaks in ([0, 2], [0.5, 0.5], [0, math.nan])]):
+            self.assertRefused(self.ask(which, LINE, **fields), *words)
         line = bezier(*LINE)
         self.assertRefused(self.server.distance(line, gradient=True, per_object=True), 'per_object')
-        for request, fields in ((ClearanceProfileRequest, {}), (ListViolationsRequest, dict(delta=0.1))):
-            self.assertRefused(self.services[request](request(query=query(line, gradient=True), **fields)), 'gradient')
+        for which, fields in (('clearance_profile', {}), ('violations', dict(delta=0.1))):
+            self.assertRefused(self.server.ask(which, query=query(line, gradient=True), **fields), 'gradient')
 
         # of one curve: the others are answered
-        for request, fields in ((NearestPairsRequest, dict(count=1)), (TimeOfContactRequest, {}), (ClearanceProfileRequest, dict(intervals=3)),
-                                (ListViolationsRequest, dict(delta=0.1))):
-            response = self.ask(request, BAD, LINE, objects=['ball'], **fields)
+        for which, fields in (('nearest_pairs', dict(count=1)), ('time_of_contact', {}), ('clearance_profile', dict(intervals=3)),
+                              ('violations', dict(delta=0.1))):
+            response = self.ask(which, BAD, LINE, objects=['ball'], **fields)
             self.assertRefused(response, '1 of 2 rows', 'not finite')
             rows = getattr(response, 'results', None) or [one.summary for one in getattr(response, 'profiles', None) or response.violations]
             self.assertEqual([row.status for row in rows], ['invalid', 'ok'])
 
     def test_nothing_to_measure_against_is_said(self):
         self.server.replace()
-        row, = self.good(self.ask(TimeOfContactRequest))
+        row, = self.good(self.ask('time_of_contact'))
         self.assertEqual((row.verdict, row.status, row.upper, row.b), ('undecided', 'empty', math.inf, ''))
-        response = self.ask(NearestPairsRequest)
+        response = self.ask('nearest_pairs')
         self.assertTrue(any('against nothing' in warning for warning in response.warnings), response.warnings)
-        profile, = self.good(self.ask(ClearanceProfileRequest, intervals=2))
+        profile, = self.good(self.ask('clearance_profile', intervals=2))
         self.assertEqual((list(profile.lower), list(profile.b)), ([0] * 2, [''] * 2))
 
 

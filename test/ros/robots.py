@@ -12,13 +12,12 @@ import unittest
 import rospy
 import yaml
 from curve_proximity.msg import CollisionObject
-from helpers import Node, Server, bezier, connected, joints, run, sphere, until
+from helpers import LINE, Node, Server, connected, joints, run, sphere, until
 from sensor_msgs.msg import JointState
 
 DATA = os.path.dirname(os.path.abspath(__file__)) + '/../data'
 NODES = DATA + '/../../nodes'
 CONFIG = DATA + '/../../rviz/curve_proximity.rviz'
-LINE = bezier((-1, 0, 1), (1, 0, 1))
 
 
 class Robots(unittest.TestCase):

@@ -4,11 +4,9 @@
 import os
 import tempfile
 
-from helpers import Case, bezier, joints, run
+from helpers import ARM, LINE, Case, joints, run
 
-ARM = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'data', 'arm.urdf')
 PANDA = os.path.realpath(os.path.join(os.path.dirname(ARM), '../../data/robots/panda'))
-LINE = bezier((-1, 0, 1), (1, 0, 1))
 ROBOT = '''<robot name="one"><link name="base"/>
   <link name="finger"><collision><geometry><mesh filename="%s"/></geometry></collision></link>
   <joint name="slide" type="prismatic"><parent link="base"/><child link="finger"/><limit lower="-9" upper="9" effort="1" velocity="1"/></joint>
