@@ -13,6 +13,7 @@
 #include <curve_proximity/TimeOfContact.h>
 #include <curve_proximity/Tolerance.h>
 #include <ros/console.h>
+#include <ros/this_node.h>
 
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
@@ -269,14 +270,12 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
     options.max_nodes = static_cast<std::uint32_t>(tuning_.max_nodes.load());
     answerLinkPairs(request, response, live_, options, budget);
   });
-  const auto take_object = [this](const CollisionObjectConstPtr &object) { takeObject(object); };
-  const auto count_object = [this](const std::string &publisher, const CollisionObject &object) {
-    countObject(publisher, object.header.seq);
-  };
-  const auto take_attached = [this](const AttachedCollisionObjectConstPtr &object) { takeAttached(object); };
   ros::SubscribeOptions topics[] = {
-      checkedSubscription<CollisionObject>("collision_object", OBJECTS_KEPT, take_object, count_object),
-      checkedSubscription<AttachedCollisionObject>("attached_collision_object", OBJECTS_KEPT, take_attached)};
+      checkedSubscription<CollisionObject, const ObjectEvent &>(
+          "collision_object", OBJECTS_KEPT, [this](const ObjectEvent &event) { takeObject(event); }),
+      checkedSubscription<AttachedCollisionObject>(
+          "attached_collision_object", OBJECTS_KEPT,
+          [this](const AttachedCollisionObjectConstPtr &object) { takeAttached(object); })};
   for (ros::SubscribeOptions &topic : topics) objects_.push_back(objects_handle_.subscribe(topic));
   planning_scene_ = std::make_unique<PlanningSceneTopic>(
       handle, parameters_, live_, frames_,
@@ -445,9 +444,11 @@ void ProximityServer::changeScene(const char *topic, Fill &&fill) {
       warn);
 }
 
-/** A publisher numbers its messages: one that is left out was lost, because more than OBJECTS_KEPT came at once. */
+/** roscpp numbers the messages that a publisher sends over a connection: one that is left out was lost, because more
+ *  than OBJECTS_KEPT came at once. */
 void ProximityServer::countObject(const std::string &publisher, std::uint32_t number) {
   constexpr std::size_t MOST = 1000;
+  if (publisher == ros::this_node::getName()) return; // those are not numbered
   if (last_objects_.size() > MOST) last_objects_.clear();
   std::uint32_t &last = last_objects_.emplace(publisher, number).first->second;
   if (number > last && number - last > 1) {
@@ -459,7 +460,9 @@ void ProximityServer::countObject(const std::string &publisher, std::uint32_t nu
   last = number;
 }
 
-void ProximityServer::takeObject(const CollisionObjectConstPtr &object) {
+void ProximityServer::takeObject(const ObjectEvent &event) {
+  const CollisionObjectConstPtr object = event.getMessage();
+  countObject(event.getPublisherName(), object->header.seq);
   changeScene("~collision_object", [&](ApplyScene::Request &request) {
     request.objects.push_back(*object);
     return object->id;

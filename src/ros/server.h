@@ -75,8 +75,9 @@ class ProximityServer {
   void applyScene(const Call &call, ApplyScene::Request &request, ApplyScene::Response &response);
   void getScene(const GetScene::Request &request, GetScene::Response &response);
 
+  using ObjectEvent = ros::MessageEvent<const CollisionObject>;
   void countObject(const std::string &publisher, std::uint32_t number);
-  void takeObject(const CollisionObjectConstPtr &object);
+  void takeObject(const ObjectEvent &event);
   void takeAttached(const AttachedCollisionObjectConstPtr &object);
   template <class Fill>
   void changeScene(const char *topic, Fill &&fill);

@@ -6,11 +6,12 @@ import threading
 import time
 from xmlrpc.client import ServerProxy
 
+import numpy
 import rosgraph
 import rospy
-from curve_proximity.msg import Curve
+from curve_proximity.msg import CollisionObject, Curve
 from curve_proximity.srv import ApplyScene, Distance, Tolerance, ToleranceResponse
-from helpers import LINE, Call, Case, Server, raw_call, request_of_points, resident_mb, ring_and_shells, run, sphere
+from helpers import LINE, Call, Case, Server, body, raw_call, request_of_points, resident_mb, ring_and_shells, run, sphere, until
 from nodelet.srv import NodeletList, NodeletLoad, NodeletUnload
 
 
@@ -22,8 +23,9 @@ class Nodelet(Case):
         cls.unload_nodelet = rospy.ServiceProxy('/manager/unload_nodelet', NodeletUnload)
         cls.list_nodelets = rospy.ServiceProxy('/manager/list', NodeletList)
 
-    def load(self, name):
-        self.assertTrue(self.load_nodelet(name, 'curve_proximity/ProximityServer', [], [], [], '').success)
+    def load(self, name, **remapped):
+        names = [['%s/%s' % (name, topic) for topic in remapped], list(remapped.values())]
+        self.assertTrue(self.load_nodelet(name, 'curve_proximity/ProximityServer', *names, [], '').success)
         return Server(name)
 
     def test_it_answers_in_a_manager(self):
@@ -32,6 +34,21 @@ class Nodelet(Case):
         self.assertAlmostEqual(self.row(server.distance(LINE)).upper, 0.75, delta=2e-6)
         self.assertTrue(self.unload_nodelet('/answering').success)
         self.assertEqual(self.list_nodelets().nodelets, [])
+
+    def test_two_servers_of_one_topic_each_know_what_they_have_lost(self):
+        for name in ('/second', '/first'):
+            self.addCleanup(self.unload_nodelet, name)
+        servers = [self.load('/first'), self.load('/second', collision_object='/first/collision_object')]
+        objects = self.publisher('/first/collision_object', CollisionObject, queue_size=0)
+        points = numpy.random.RandomState(7).randn(50000, 3)
+        points /= numpy.linalg.norm(points, axis=1)[:, None]
+        objects.publish(body('large', 'polytope', vertices=points, position=(0, 0, 9)))  # the others wait meanwhile
+        for i in range(3000):
+            objects.publish(sphere('object %d' % i, 0.1, (0, 0, 5)))
+        for server in servers:
+            self.assertTrue(until(lambda: any(o.id == 'object 2999' for o in server.scene().objects), 60))
+            row = server.tolerance(LINE, 0.1).results[0]
+            self.assertEqual(row.status, 'unknown' if server.scene().scene.objects < 3001 else 'ok', row.message)
 
     def test_unloading_during_a_call_leaves_the_manager_alive(self):
         ring, balls, fields = ring_and_shells()

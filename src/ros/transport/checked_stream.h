@@ -85,32 +85,22 @@ inline ros::NodeHandle onQueue(const ros::NodeHandle &handle, ros::CallbackQueue
 }
 
 /** As ros::NodeHandle::subscribe(), by CheckedStream. Within a process messages go by pointer, as ever.
- *  read: if set, called with the publisher's name and each message that came over a connection, before `callback`. */
-template <class Message>
-ros::SubscribeOptions checkedSubscription(
-    const std::string &topic, std::uint32_t queue_size,
-    std::function<void(const boost::shared_ptr<const Message> &)> callback,
-    std::function<void(const std::string &publisher, const Message &)> read = nullptr) {
-  using Pointer = boost::shared_ptr<const Message>;
-  class Helper : public ros::SubscriptionCallbackHelperT<const Pointer &> {
+ *  Parameter: of the callback. */
+template <class Message, class Parameter = const boost::shared_ptr<const Message> &, class Callback>
+ros::SubscribeOptions checkedSubscription(const std::string &topic, std::uint32_t queue_size, Callback callback) {
+  class Helper : public ros::SubscriptionCallbackHelperT<Parameter> {
    public:
-    using Base = ros::SubscriptionCallbackHelperT<const Pointer &>;
-    Helper(const typename Base::Callback &callback, std::function<void(const std::string &, const Message &)> read)
-        : Base(callback), read_(std::move(read)) {}
+    using ros::SubscriptionCallbackHelperT<Parameter>::SubscriptionCallbackHelperT;
     ros::VoidConstPtr deserialize(const ros::SubscriptionCallbackHelperDeserializeParams &params) override {
       const auto message = boost::make_shared<Message>();
       CheckedStream stream(params.buffer, params.length);
       stream.next(*message);
-      if (read_) read_((*params.connection_header)["callerid"], *message);
       return message;
     }
-
-   private:
-    const std::function<void(const std::string &, const Message &)> read_;
   };
   ros::SubscribeOptions options;
-  options.init<Message>(topic, queue_size, callback);
-  options.helper = boost::make_shared<Helper>(callback, std::move(read));
+  options.init<Message>(topic, queue_size, {});
+  options.helper = boost::make_shared<Helper>(callback);
   return options;
 }
 
