@@ -252,19 +252,19 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
                              [this](const Call &call, auto &request, auto &response) {
                                Turn turn(turns_, call.client, waitUntil(call));
                                response.frame_id = frames_.fixedFrame();
-                               const TimeBudget budget(tuning_.budget_ms, call.arrival, stop_, &turn);
+                               const TimeBudget budget(tuning_.budget_ms, call.arrival, stop_, &turn, call.isGone);
                                constraints_.answer(request, response, budget, &turn);
                              });
   serve<MeasurePairs>("measure_pairs", SCENE_TIMES_WIRE, [this](const Call &call, auto &request, auto &response) {
     Turn turn(turns_, call.client, waitUntil(call));
-    TimeBudget budget(tuning_.budget_ms, call.arrival, stop_, &turn);
+    TimeBudget budget(tuning_.budget_ms, call.arrival, stop_, &turn, call.isGone);
     pairs_.answer(request, response, budget);
   });
   serve<ListLinkPairs>("collision_matrix", SCENE_TIMES_WIRE, [this](const Call &call, auto &request, auto &response) {
     Turn turn(turns_, call.client, waitUntil(call));
     const double budget_ms = request.budget_ms != 0.0 ? request.budget_ms : tuning_.budget_ms.load();
     if (!(budget_ms > 0.0)) throw Error("budget_ms is " + std::to_string(budget_ms) + ": it must be at least 0");
-    TimeBudget budget(budget_ms, call.arrival, stop_, &turn);
+    TimeBudget budget(budget_ms, call.arrival, stop_, &turn, call.isGone);
     cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = tuning_.epsilon;
     options.max_nodes = static_cast<std::uint32_t>(tuning_.max_nodes.load());
@@ -294,7 +294,8 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
       std::make_unique<Diagnostics>(control_handle_, statistics_, turns_, *pipeline_, *planning_scene_, live_);
   reconfigure_ =
       std::make_unique<Reconfigure>(control_handle_, tuning_, [this](int threads) { turns_.setSlots(threads); });
-  for (ThreadedQueue *queue : {&control_queue_, &objects_queue_, &requests_}) queue->start();
+  for (ThreadedQueue *queue : std::initializer_list<ThreadedQueue *>{&control_queue_, &objects_queue_, &requests_})
+    queue->start();
   const SnapshotPtr snapshot = live_.scene.snapshot();
   ROS_INFO("ready: %zu links, %zu objects%s%s, %zu services", snapshot->robot() ? snapshot->robot()->links().size() : 0,
            snapshot->objects().size() + snapshot->moving().size(), parameters_.scene_file.empty() ? "" : " of ",
@@ -314,7 +315,8 @@ ProximityServer::~ProximityServer() {
   // No new calls, then no thread in a callback, then nothing left that names this object.
   for (ros::ServiceServer &service : services_) service.shutdown();
   for (ros::Subscriber &subscriber : objects_) subscriber.shutdown();
-  for (ThreadedQueue *queue : {&control_queue_, &objects_queue_, &requests_}) queue->end();
+  for (ThreadedQueue *queue : std::initializer_list<ThreadedQueue *>{&control_queue_, &objects_queue_, &requests_})
+    queue->end();
   reconfigure_.reset();
   diagnostics_.reset();
   batches_.reset();
@@ -370,6 +372,7 @@ void ProximityServer::serveQueries(const char *name, QueryType query_type) {
     request.budget_ms = asked.query.budget_ms;
     request.arrival = call.arrival;
     request.turn = &turn;
+    request.cancelled = call.isGone;
     QueryResponse answer;
     auto drawing = std::make_shared<Drawing>();
     if (!markers_->isWatched()) drawing->most_lines = 0;

@@ -91,7 +91,8 @@ class ProximityServer {
   Tuning tuning_;
   Statistics statistics_;
   std::atomic<bool> stop_{false};
-  ThreadedQueue requests_, objects_queue_, control_queue_;   /* services; ~collision_object; what watches over all */
+  ServiceQueue requests_;
+  ThreadedQueue objects_queue_, control_queue_;              /* ~collision_object; what watches over all */
   ros::NodeHandle handle_, objects_handle_, control_handle_; /* their callbacks go to these queues */
   Turns turns_, scene_turns_; /* of queries; of large changes of the scene, which are made beside them */
   Frames frames_;

@@ -373,6 +373,12 @@ def resident_mb(pid, shadow=False):
     return sum(int(size) for begin, size in mappings if int(begin, 16) not in SHADOW) / 1024
 
 
+def cpu_seconds(pid):
+    """What a process has computed so far."""
+    with open('/proc/%d/stat' % pid) as stat:
+        return sum(map(int, stat.read().rsplit(')', 1)[1].split()[11:13])) / os.sysconf('SC_CLK_TCK')
+
+
 def request_of_points(data):
     """The bytes of a request of ~apply_scene for one body of points; data: theirs, 24 each. No message of all of them is made."""
     texts = [serialized(srv.ApplySceneRequest(objects=[body('big', 'points', vertices=[(0, 0, 0)] * n)])) for n in (0, 1)]

@@ -5,7 +5,9 @@ import os
 import signal
 import time
 
-from helpers import Call, Case, bezier, ring_and_shells, run, sphere
+from curve_proximity.msg import ConstraintQuery, ProximityQuery
+from curve_proximity.srv import Distance, DistanceRequest, EvaluateConstraints, EvaluateConstraintsRequest
+from helpers import Call, Case, RawClient, bezier, cpu_seconds, framed, ring_and_shells, run, serialized, sphere, until
 
 LINE = bezier((-1, 0, 1), (1, 0, 1))
 CALLS = int(os.environ.get('CURVE_PROXIMITY_CALLS', 20000))  # of the memory test
@@ -27,6 +29,23 @@ class Lifetime(Case):
         if call.response is not None:
             self.assertIn('stopped', {row.status for row in call.response.results})
         self.assertEqual(node.wait(5), 0, node.output())
+
+    def test_work_ends_when_its_client_is_gone(self):
+        node, server = self.begin('left', budget_ms=600000)
+        ring, balls, fields = ring_and_shells()
+        server.replace(*balls)
+        case = ConstraintQuery(providers=['curve_proximity/CurveDistance'], b=sphere('ball', 0.5), curve=ring)
+        for name, kind, request in (('distance', Distance, DistanceRequest(ProximityQuery(curves=[ring], **fields))),
+                                    ('evaluate_constraints', EvaluateConstraints, EvaluateConstraintsRequest(cases=[case] * 10))):
+            client = RawClient('/left/' + name, kind)
+            begin = cpu_seconds(node.process.pid)
+            client.connection.sendall(framed(serialized(request)))
+            assert until(lambda: cpu_seconds(node.process.pid) > begin + 0.3, 30), 'the call was not long'
+            client.close()
+            left = cpu_seconds(node.process.pid)
+            time.sleep(2)
+            with self.subTest(name):
+                self.assertLess(cpu_seconds(node.process.pid), left + 0.3)
 
     def test_memory_is_flat_over_many_calls(self):
         node, server = self.begin('lasting')

@@ -130,7 +130,7 @@ void BatchAction::answer(Batch &batch) {
         request.budget_ms = budget_ms != 0.0 ? budget_ms : std::numeric_limits<double>::infinity();
         Turn turn(turns_, "~query", Turns::Clock::time_point::max());
         request.turn = &turn;
-        request.cancelled = &batch.cancelled;
+        request.cancelled = [&batch] { return batch.cancelled.load(); };
         const Progress progress = [&](const QueryResponse &response, std::size_t done) {
           if (feedback.update(response, done)) batch.handle.publishFeedback(feedback.message());
         };

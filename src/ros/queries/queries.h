@@ -70,8 +70,8 @@ struct QueryRequest {
   Coverage coverage;          /**< what of the trajectories' source is not in them */
   double budget_ms = 0.0;     /**< 0: the server's */
   std::chrono::steady_clock::time_point arrival = std::chrono::steady_clock::now(); /**< when the budget begins */
-  const std::atomic<bool> *cancelled = nullptr; /**< set, it ends this query; null: nobody can */
-  const Progress *progress = nullptr;           /**< called after each curve and trajectory; null: nobody is told */
+  std::function<bool()> cancelled;    /**< once true, it ends this query; empty: nobody can */
+  const Progress *progress = nullptr; /**< called after each curve and trajectory; null: nobody is told */
   std::vector<Problem> *problems =
       nullptr;          /**< not null: the rows are not answered, but told as the checker reads them */
   Turn *turn = nullptr; /**< given back to others now and then; may be null */

@@ -7,8 +7,10 @@
 #include <atomic>
 #include <chrono>
 #include <curve_proximity/core.hpp>
+#include <functional>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "transport/turns.h"
 
@@ -19,13 +21,14 @@ class TimeBudget {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /** begin: of the time. turn: of the thread that asks; cancelled: set, it ends the query; both may be null. */
+  /** begin: of the time. turn: of the thread that asks; may be null. cancelled: once true, it ends the query; may be
+   *  empty. */
   TimeBudget(double milliseconds, Clock::time_point begin, const std::atomic<bool> &stop, Turn *turn,
-             const std::atomic<bool> *cancelled = nullptr)
+             std::function<bool()> cancelled)
       : milliseconds_(milliseconds),
         deadline_(deadlineOf(begin, milliseconds)),
         stop_(stop),
-        cancelled_(cancelled),
+        cancelled_(std::move(cancelled)),
         turn_(turn) {}
 
   /** In the shape of cprox_options.stop. */
@@ -61,13 +64,13 @@ class TimeBudget {
   }
 
   bool isCancelled() const {
-    return cancelled_ && *cancelled_;
+    return cancelled_ && cancelled_();
   }
 
   const double milliseconds_;
   const Clock::time_point deadline_;
   const std::atomic<bool> &stop_;
-  const std::atomic<bool> *const cancelled_;
+  const std::function<bool()> cancelled_;
   Turn *const turn_;
 };
 

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** A service of roscpp that sees a request before it is made: its bytes, its connection, when it came. */
+/** A service of roscpp that sees a request before it is made: its bytes, its connection, when it came; and whether its
+ *  client is still there. */
 #ifndef CURVE_PROXIMITY_ROS_SERVICE_H
 #define CURVE_PROXIMITY_ROS_SERVICE_H
 
 #include <ros/advertise_service_options.h>
+#include <ros/callback_queue_interface.h>
 #include <ros/node_handle.h>
 #include <ros/service_callback_helper.h>
 #include <ros/service_server.h>
@@ -15,6 +17,7 @@
 #include <string>
 
 #include "transport/checked_stream.h"
+#include "transport/threaded_queue.h"
 
 namespace curve_proximity {
 
@@ -23,7 +26,64 @@ struct Call {
   std::string client; /**< who shares one place in the order: the connection, or its node where each call has its own */
   std::size_t bytes = 0; /**< of the request on the wire */
   std::chrono::steady_clock::time_point arrival = std::chrono::steady_clock::now();
-  bool in_process = false; /**< by a thread of the caller, not one of the pool */
+  bool in_process = false;      /**< by a thread of the caller, not one of the pool */
+  std::function<bool()> isGone; /**< has its client gone? By the thread of the call; empty: nobody can say */
+};
+
+/** A callback of a service, at work. roscpp tells a callback that its client has gone when it is called, not while it
+ *  works: so it is called once more, now and then. If the client is there, this comes to ServiceHelper, which throws
+ *  `Asked`. */
+class RunningCall : public ros::CallbackInterface {
+ public:
+  struct Asked {};
+
+  explicit RunningCall(ros::CallbackInterfacePtr callback) : callback_(std::move(callback)) {}
+
+  CallResult call() override {
+    ofThread() = this;
+    const CallResult result = callback_->call();
+    ofThread() = nullptr;
+    return result;
+  }
+
+  /** The one at work in this thread; null: none. */
+  static RunningCall *&ofThread() {
+    static thread_local RunningCall *running = nullptr;
+    return running;
+  }
+
+  bool isAsked() const {
+    return asked_;
+  }
+
+  /** Has the client closed its connection? By the thread that works. Once true it stays so. */
+  bool isGone() {
+    const auto now = std::chrono::steady_clock::now();
+    if (gone_ || now < next_) return gone_;
+    next_ = now + std::chrono::milliseconds(10);
+    asked_ = true;
+    try {
+      gone_ = callback_->call() == Invalid;
+    } catch (const Asked &) {
+    }
+    asked_ = false;
+    return gone_;
+  }
+
+ private:
+  const ros::CallbackInterfacePtr callback_;
+  std::chrono::steady_clock::time_point next_{};
+  bool asked_ = false, gone_ = false;
+};
+
+/** The queue of services. */
+class ServiceQueue : public ThreadedQueue {
+ public:
+  using ThreadedQueue::ThreadedQueue;
+
+  void addCallback(const ros::CallbackInterfacePtr &callback, std::uint64_t removal_id = 0) override {
+    ThreadedQueue::addCallback(boost::make_shared<RunningCall>(callback), removal_id);
+  }
 };
 
 /** handler(call, read, response): `read(request)` makes the request of its bytes. What handler throws fails the call;
@@ -40,6 +100,10 @@ class ServiceHelper : public ros::ServiceCallbackHelper {
 
   bool call(ros::ServiceCallbackHelperCallParams &params) override {
     Call call;
+    if (RunningCall *running = RunningCall::ofThread()) {
+      if (running->isAsked()) throw RunningCall::Asked();
+      call.isGone = [running] { return running->isGone(); };
+    }
     call.bytes = params.request.num_bytes;
     call.client = clientOf(params.connection_header.get());
     Response response;
