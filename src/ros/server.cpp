@@ -356,8 +356,7 @@ std::size_t ProximityServer::requestLimit() const {
 /** How long the request may wait for a turn. The last one that may run does not wait: it refuses further ones. */
 Turns::Clock::time_point ProximityServer::waitUntil(const Call &call) {
   if (!call.in_process && requests_.isFull()) return call.arrival;
-  return call.arrival + std::chrono::duration_cast<Turns::Clock::duration>(
-                            std::chrono::duration<double, std::milli>(parameters_.max_wait_ms));
+  return TimeBudget::after(call.arrival, parameters_.max_wait_ms);
 }
 
 template <class Service>
@@ -409,10 +408,8 @@ std::vector<std::string> ProximityServer::apply(const ApplyScene::Request &reque
 
 /** Within ~scene_budget_ms; `before`: the scene that the change was made for. */
 std::vector<std::string> ProximityServer::applyChange(SceneChange &change, const Snapshot &before) {
-  const auto deadline =
-      std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                                             std::chrono::duration<double, std::milli>(parameters_.scene_budget_ms));
-  change.stop = [&] { return stop_ || std::chrono::steady_clock::now() >= deadline; };
+  const TimeBudget budget(parameters_.scene_budget_ms, TimeBudget::Clock::now(), stop_, nullptr, {});
+  change.stop = [&] { return budget.isReached(); };
   std::vector<std::string> faults = live_.apply(change, before);
   state_file_.changed();
   return faults;

@@ -26,7 +26,7 @@ class TimeBudget {
   TimeBudget(double milliseconds, Clock::time_point begin, const std::atomic<bool> &stop, Turn *turn,
              std::function<bool()> cancelled)
       : milliseconds_(milliseconds),
-        deadline_(deadlineOf(begin, milliseconds)),
+        deadline_(after(begin, milliseconds)),
         stop_(stop),
         cancelled_(std::move(cancelled)),
         turn_(turn) {}
@@ -56,13 +56,13 @@ class TimeBudget {
     return text.str();
   }
 
- private:
-  static Clock::time_point deadlineOf(Clock::time_point begin, double milliseconds) {
+  static Clock::time_point after(Clock::time_point begin, double milliseconds) {
     constexpr double FOREVER = 1e12; /* [ms] decades: within what the clock can count */
     const std::chrono::duration<double, std::milli> wait(std::min(milliseconds, FOREVER));
     return begin + std::chrono::duration_cast<Clock::duration>(wait);
   }
 
+ private:
   bool isCancelled() const {
     return cancelled_ && cancelled_();
   }
