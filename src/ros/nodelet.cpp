@@ -30,8 +30,9 @@ class TrajectoryGateNodelet : public nodelet::Nodelet {
     if (parameters.verify) {
       const ros::NodeHandle own(handle, READING_OF_GATE);
       reading_ = std::make_unique<ProximityServer>(own, readParameters(own));
-      proofs_ = std::make_unique<ProofCheck>([this](const ProximityQuery &query) { return reading_->problems(query); },
-                                             [this] { return reading_->version(); });
+      proofs_ = std::make_unique<ProofCheck>(
+          ProofCheck{[this](const ProximityQuery &query) { return reading_->problems(query); },
+                     [this] { return reading_->version(); }});
     }
     gate_ = std::make_unique<TrajectoryGate>(handle, parameters, proofs_.get());
   }

@@ -100,8 +100,7 @@ void ActionGate::begin(Server::GoalHandle goal) {
   SeenScene scene;
   bool passes = trajectory.points.empty() || isClear(trajectory, query, scene, refusal);
   if (passes && !client_->isServerConnected()) {
-    refusal = Refusal();
-    refusal.message = lostController();
+    refusal = refusalBecause(lostController(), SceneState());
     passes = false;
   }
   if (!passes) {
@@ -202,9 +201,7 @@ void ActionGate::findLost() {
   if (running.empty() || client_->isServerConnected()) return;
   for (const RunningPointer &one : running) {
     if (!forget(one)) continue;
-    Refusal refusal;
-    refusal.header.stamp = ros::Time::now();
-    refusal.message = lostController();
+    Refusal refusal = refusalBecause(lostController(), SceneState());
     control_msgs::FollowJointTrajectoryResult result;
     result.error_code = control_msgs::FollowJointTrajectoryResult::PATH_TOLERANCE_VIOLATED;
     result.error_string = refusal.message;

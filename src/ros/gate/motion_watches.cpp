@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gate/motion_watches.h"
 
-#include <ros/console.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <curve_proximity/core.hpp>
@@ -212,10 +210,7 @@ JointTrajectory MotionWatches::fromHere(JointTrajectory trajectory) const {
 }
 
 void MotionWatches::look() {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    looked_ = steady_clock::now();
-  }
+  looked_ = steady_clock::now();
   for (const auto &watch : all()) {
     Refusal refusal;
     if (watch->stopped_ || watch->isOver()) {
@@ -224,18 +219,14 @@ void MotionWatches::look() {
       watch->stop(std::move(refusal));
       remove(watch);
     }
-    const std::lock_guard<std::mutex> lock(mutex_);
     looked_ = steady_clock::now();
   }
 }
 
 /* What the robot tells needs no server; and the server may keep the other thread waiting. */
 void MotionWatches::supervise() {
-  bool silent;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    silent = std::chrono::duration<double>(steady_clock::now() - looked_).count() > parameters_.server_timeout;
-  }
+  const std::chrono::duration<double> silence = steady_clock::now() - looked_.load();
+  const bool silent = silence.count() > parameters_.server_timeout;
   for (const auto &watch : all()) {
     const std::string why = silent ? "the server has not answered for ~server_timeout" : watch->doubt();
     if (why.empty() || watch->isOver()) continue;

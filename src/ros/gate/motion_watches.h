@@ -129,7 +129,7 @@ class MotionWatches {
   mutable std::mutex mutex_;
   std::list<std::shared_ptr<MotionWatch>> watches_;
   std::map<std::string, std::pair<double, ros::Time>> joints_; /* of ~joint_states: the latest of each, and when */
-  std::chrono::steady_clock::time_point looked_ = std::chrono::steady_clock::now();
+  std::atomic<std::chrono::steady_clock::time_point> looked_{std::chrono::steady_clock::now()};
   ThreadedQueue queue_; /* of the timers, at once */
   ros::WallTimer looking_, supervising_;
 };

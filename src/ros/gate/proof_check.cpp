@@ -32,13 +32,13 @@ std::string doubtOf(const Problem &problem, const Proximity &row, double delta) 
 } // namespace
 
 std::string ProofCheck::doubt(const ProximityQuery &query, const std::vector<Proximity> &rows, double delta) const {
-  const std::vector<Problem> problems = problems_(query);
-  if (problems.empty()) return "there is nothing to prove";
-  if (problems.size() != rows.size())
+  const std::vector<Problem> wanted = problems(query);
+  if (wanted.empty()) return "there is nothing to prove";
+  if (wanted.size() != rows.size())
     return "the server has answered with " + std::to_string(rows.size()) + " rows, where " +
-           std::to_string(problems.size()) + " are to be proven";
+           std::to_string(wanted.size()) + " are to be proven";
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const std::string why = doubtOf(problems[i], rows[i], delta);
+    const std::string why = doubtOf(wanted[i], rows[i], delta);
     if (!why.empty()) return "row '" + rows[i].id + "' (" + rows[i].kind + ") is not proven: " + why;
   }
   return "";

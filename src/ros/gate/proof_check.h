@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <functional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "../scene/query/certificate_problem.h"
@@ -19,26 +18,16 @@ namespace curve_proximity {
 /** What a query is about is read by the gate itself, from the robot, the frames, the joints and the objects that have
  * come to it; a row of the server proves something of that, or nothing. The check is that of the program cprox_check
  * (check/), which shares no line with the search. By any thread. */
-class ProofCheck {
- public:
-  using Problems = std::function<std::vector<Problem>(const ProximityQuery &)>;
-  using Version = std::function<std::uint64_t()>;
-
-  /** problems: the rows of a query by the gate's own reading; may throw Error. version: of what is read. */
-  ProofCheck(Problems problems, Version version) : problems_(std::move(problems)), version_(std::move(version)) {}
+struct ProofCheck {
+  /** The rows of a query by the gate's own reading; may throw Error. */
+  std::function<std::vector<Problem>(const ProximityQuery &)> problems;
 
   /** The number of changes of what the gate reads. */
-  std::uint64_t version() const {
-    return version_();
-  }
+  std::function<std::uint64_t()> version;
 
   /** Do the certificates of the rows prove that all of the query stays farther than delta from everything? Empty, or
    *  why not. Throws Error where the query cannot be read. */
   std::string doubt(const ProximityQuery &query, const std::vector<Proximity> &rows, double delta) const;
-
- private:
-  Problems problems_;
-  Version version_;
 };
 
 } // namespace curve_proximity

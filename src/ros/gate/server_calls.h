@@ -14,7 +14,6 @@
 #include <curve_proximity/client.hpp>
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "gate/proof_check.h"
 

@@ -20,27 +20,6 @@ using trajectory_msgs::JointTrajectory;
 
 constexpr std::uint32_t MOTION_QUEUE = 100; /* of roscpp: emptied at once */
 
-void addTo(ProximityQuery &query, const Curve &curve) {
-  query.curves.push_back(curve);
-}
-void addTo(ProximityQuery &query, const nav_msgs::Path &path) {
-  query.paths.push_back(path);
-}
-void addTo(ProximityQuery &query, const JointTrajectory &trajectory) {
-  query.trajectories.push_back(trajectory);
-}
-void addTo(ProximityQuery &query, const trajectory_msgs::MultiDOFJointTrajectory &trajectory) {
-  query.multi_dof_trajectories.push_back(trajectory);
-}
-
-std::string idOf(const Curve &curve) {
-  return curve.id;
-}
-template <class Message>
-std::string idOf(const Message &) {
-  return "";
-}
-
 } // namespace
 
 TrajectoryGate::TrajectoryGate(const ros::NodeHandle &handle, const GateParameters &parameters,
@@ -53,12 +32,11 @@ TrajectoryGate::TrajectoryGate(const ros::NodeHandle &handle, const GateParamete
       calls_(handle_, parameters_.server, parameters_.delta, proofs) {
   if (parameters_.watch) watches_ = std::make_unique<MotionWatches>(handle_, parameters_, proofs);
   if (!parameters_.controller.empty()) actions_ = std::make_unique<ActionGate>(handle, parameters_, refused_, proofs);
-  connect<Curve>("curve", handle_.advertise<Curve>("clear_curve", MOTION_QUEUE));
-  connect<JointTrajectory>("trajectory", clear_trajectory_);
-  connect<trajectory_msgs::MultiDOFJointTrajectory>(
-      "multi_dof_trajectory",
-      handle_.advertise<trajectory_msgs::MultiDOFJointTrajectory>("clear_multi_dof_trajectory", MOTION_QUEUE));
-  connect<nav_msgs::Path>("path", handle_.advertise<nav_msgs::Path>("clear_path", MOTION_QUEUE));
+  connect("curve", &ProximityQuery::curves, handle_.advertise<Curve>("clear_curve", MOTION_QUEUE));
+  connect("trajectory", &ProximityQuery::trajectories, clear_trajectory_);
+  connect("multi_dof_trajectory", &ProximityQuery::multi_dof_trajectories,
+          handle_.advertise<trajectory_msgs::MultiDOFJointTrajectory>("clear_multi_dof_trajectory", MOTION_QUEUE));
+  connect("path", &ProximityQuery::paths, handle_.advertise<nav_msgs::Path>("clear_path", MOTION_QUEUE));
   queue_.start();
 }
 
@@ -71,14 +49,14 @@ TrajectoryGate::~TrajectoryGate() {
 }
 
 template <class Message>
-void TrajectoryGate::connect(const std::string &topic, const ros::Publisher &out) {
+void TrajectoryGate::connect(const std::string &topic, std::vector<Message> ProximityQuery::*motions,
+                             const ros::Publisher &out) {
   using Pointer = boost::shared_ptr<const Message>;
-  subscribers_.push_back(handle_.subscribe<Message>(topic, MOTION_QUEUE, [this, topic, out](const Pointer &message) {
+  subscribers_.push_back(handle_.subscribe<Message>(topic, MOTION_QUEUE, [=](const Pointer &message) {
     if constexpr (std::is_same_v<Message, JointTrajectory>)
       if (message->points.empty()) return stop(message);
     const std::uint64_t stops = stops_;
-    queue_.add(
-        [this, topic, out, message, stops] { guarded([&] { judge(topic, message, stops, out); }, logGateError); });
+    queue_.add([=] { guarded([&] { judge(topic, motions, message, stops, out); }, logGateError); });
   }));
 }
 
@@ -90,11 +68,13 @@ void TrajectoryGate::stop(const trajectory_msgs::JointTrajectoryConstPtr &messag
 }
 
 template <class Message>
-void TrajectoryGate::judge(const std::string &topic, const boost::shared_ptr<const Message> &message,
-                           std::uint64_t stops, const ros::Publisher &out) {
-  const Motion motion{topic, idOf(*message), fingerprint(*message)};
+void TrajectoryGate::judge(const std::string &topic, std::vector<Message> ProximityQuery::*motions,
+                           const boost::shared_ptr<const Message> &message, std::uint64_t stops,
+                           const ros::Publisher &out) {
+  Motion motion{topic, "", fingerprint(*message)};
+  if constexpr (std::is_same_v<Message, Curve>) motion.id = message->id;
   ProximityQuery query;
-  addTo(query, *message);
+  (query.*motions).push_back(*message);
   query.current_joints = !query.trajectories.empty() || !query.multi_dof_trajectories.empty();
   query.self_collision = query.current_joints && parameters_.self_collision;
   SeenScene scene;

@@ -17,7 +17,6 @@
 #include "gate/server_calls.h"
 #include "parameters/parameters.h"
 #include "transport/job_queue.h"
-#include "transport/threaded_queue.h"
 
 namespace curve_proximity {
 
@@ -38,16 +37,16 @@ class TrajectoryGate {
   TrajectoryGate &operator=(const TrajectoryGate &) = delete;
 
  private:
-  /* What a refusal is about. */
+  /* What a refusal is about. id: of a curve. */
   struct Motion {
     std::string topic, id;
     std::uint64_t fingerprint;
   };
   template <class Message>
-  void connect(const std::string &topic, const ros::Publisher &out);
+  void connect(const std::string &topic, std::vector<Message> ProximityQuery::*motions, const ros::Publisher &out);
   template <class Message>
-  void judge(const std::string &topic, const boost::shared_ptr<const Message> &message, std::uint64_t stops,
-             const ros::Publisher &out);
+  void judge(const std::string &topic, std::vector<Message> ProximityQuery::*motions,
+             const boost::shared_ptr<const Message> &message, std::uint64_t stops, const ros::Publisher &out);
   void stop(const trajectory_msgs::JointTrajectoryConstPtr &message);
   void refuse(Refusal refusal, const Motion &motion);
 
