@@ -2,9 +2,8 @@
 #include "messages/cloud.h"
 
 #include <algorithm>
-#include <array>
+#include <boost/endian/conversion.hpp>
 #include <cstdint>
-#include <cstring>
 #include <string>
 
 namespace curve_proximity {
@@ -17,7 +16,7 @@ using sensor_msgs::PointField;
 struct Coordinate {
   std::size_t offset = 0;
   bool is_double = false;
-  bool swapped = false;
+  bool is_big_endian = false;
 
   double at(const std::uint8_t *point) const {
     return is_double ? read<double>(point + offset) : read<float>(point + offset);
@@ -26,21 +25,11 @@ struct Coordinate {
  private:
   template <class Number>
   Number read(const std::uint8_t *from) const {
-    std::array<std::uint8_t, sizeof(Number)> bytes;
-    std::memcpy(bytes.data(), from, sizeof(Number));
-    if (swapped) std::reverse(bytes.begin(), bytes.end());
-    Number value;
-    std::memcpy(&value, bytes.data(), sizeof(Number));
-    return value;
+    using boost::endian::endian_load, boost::endian::order;
+    return is_big_endian ? endian_load<Number, sizeof(Number), order::big>(from)
+                         : endian_load<Number, sizeof(Number), order::little>(from);
   }
 };
-
-bool machineIsBigEndian() {
-  const std::uint16_t one = 1;
-  std::uint8_t first;
-  std::memcpy(&first, &one, 1);
-  return first == 0;
-}
 
 Coordinate coordinateOf(const PointCloud2 &cloud, const std::string &name) {
   const auto field = std::find_if(cloud.fields.begin(), cloud.fields.end(),
@@ -60,7 +49,7 @@ Coordinate coordinateOf(const PointCloud2 &cloud, const std::string &name) {
     throw Error("cloud field '" + name + "' ends at byte " + std::to_string(end) + " of a point, but point_step is " +
                 std::to_string(cloud.point_step));
   }
-  return {field->offset, is_double, (cloud.is_bigendian != 0) != machineIsBigEndian()};
+  return {field->offset, is_double, cloud.is_bigendian != 0};
 }
 
 /** Throws where the rows do not lie within the data. All products are of two 32-bit numbers: none overflows. */
