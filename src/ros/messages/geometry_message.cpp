@@ -6,11 +6,12 @@
 namespace curve_proximity {
 namespace {
 
-geometry_msgs::Point pointMessage(const Eigen::Vector3d &point) {
-  geometry_msgs::Point message;
-  message.x = point.x();
-  message.y = point.y();
-  message.z = point.z();
+template <class Message>
+Message messageOf(const Eigen::Vector3d &v) {
+  Message message;
+  message.x = v.x();
+  message.y = v.y();
+  message.z = v.z();
   return message;
 }
 
@@ -51,8 +52,16 @@ bool isUnset(const geometry_msgs::Pose &pose) {
   return p.x == 0 && p.y == 0 && p.z == 0 && q.x == 0 && q.y == 0 && q.z == 0 && q.w == 0;
 }
 
+geometry_msgs::Point toPointMessage(const Eigen::Vector3d &point) {
+  return messageOf<geometry_msgs::Point>(point);
+}
+
 geometry_msgs::Point toPointMessage(const cprox_vec3 &point) {
-  return pointMessage(toEigen(point));
+  return toPointMessage(toEigen(point));
+}
+
+geometry_msgs::Vector3 toVectorMessage(const Eigen::Vector3d &vector) {
+  return messageOf<geometry_msgs::Vector3>(vector);
 }
 
 void fillPoints(const std::vector<geometry_msgs::Point> &points, Eigen::Matrix3Xd &out) {
@@ -70,7 +79,7 @@ Eigen::Matrix3Xd toPoints(const std::vector<geometry_msgs::Point> &points) {
 std::vector<geometry_msgs::Point> toPointMessages(const Eigen::Matrix3Xd &points) {
   std::vector<geometry_msgs::Point> out;
   out.reserve(static_cast<std::size_t>(points.cols()));
-  for (Eigen::Index i = 0; i < points.cols(); ++i) out.push_back(pointMessage(Eigen::Vector3d(points.col(i))));
+  for (Eigen::Index i = 0; i < points.cols(); ++i) out.push_back(toPointMessage(Eigen::Vector3d(points.col(i))));
   return out;
 }
 

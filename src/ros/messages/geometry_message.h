@@ -5,6 +5,7 @@
 
 #include <geometry_msgs/Pose.h>
 #include <geometry_msgs/Transform.h>
+#include <geometry_msgs/Vector3.h>
 
 #include <curve_proximity/core.hpp>
 #include <Eigen/Geometry>
@@ -21,7 +22,9 @@ geometry_msgs::Pose toMessage(const Eigen::Isometry3d &pose);
 /** A message that nobody filled in has zeros everywhere. */
 bool isUnset(const geometry_msgs::Pose &pose);
 
+geometry_msgs::Point toPointMessage(const Eigen::Vector3d &point);
 geometry_msgs::Point toPointMessage(const cprox_vec3 &point);
+geometry_msgs::Vector3 toVectorMessage(const Eigen::Vector3d &vector);
 
 /** tf2 knows no leading slash; users of tf still write it. */
 std::string withoutSlash(const std::string &frame);

@@ -1,15 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "messages/gradient_message.h"
 
-namespace curve_proximity {
+#include "messages/geometry_message.h"
 
-geometry_msgs::Vector3 toVectorMessage(const Eigen::Vector3d &v) {
-  geometry_msgs::Vector3 message;
-  message.x = v.x();
-  message.y = v.y();
-  message.z = v.z();
-  return message;
-}
+namespace curve_proximity {
 
 geometry_msgs::Twist toTwistMessage(const Eigen::Vector3d &linear, const Eigen::Vector3d &angular) {
   geometry_msgs::Twist message;

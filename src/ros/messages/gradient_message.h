@@ -5,15 +5,12 @@
 
 #include <curve_proximity/Gradient.h>
 #include <geometry_msgs/Twist.h>
-#include <geometry_msgs/Vector3.h>
 
 #include <curve_proximity/motion.hpp>
 #include <curve_proximity/query.hpp>
 #include <vector>
 
 namespace curve_proximity {
-
-geometry_msgs::Vector3 toVectorMessage(const Eigen::Vector3d &v);
 
 /** By a shift and a turn. */
 geometry_msgs::Twist toTwistMessage(const Eigen::Vector3d &linear, const Eigen::Vector3d &angular);

@@ -84,26 +84,27 @@ Attachment toAttachment(const AttachedCollisionObject &message, const ToFixed &t
   return out;
 }
 
-LinkScale toScaleMessage(const std::pair<const std::string, double> &scale) {
-  LinkScale message;
-  message.link_name = scale.first;
-  message.scale = scale.second;
-  return message;
-}
-
-AllowedContact toContactMessage(const AllowedPair &pair) {
-  AllowedContact message;
-  message.first = pair.a;
-  message.second = pair.b;
-  message.allowed = pair.allowed;
-  return message;
-}
-
-LinkPadding toPaddingMessage(const std::string &link, double padding) {
-  LinkPadding message;
-  message.link_name = link;
-  message.padding = padding;
-  return message;
+/** Paddings and scales of links, and who may touch whom. */
+template <class Message>
+void addSizes(const SceneChange &change, Message &message) {
+  const auto pad = [&message](const std::string &link, double padding) {
+    message.link_padding.emplace_back();
+    message.link_padding.back().link_name = link;
+    message.link_padding.back().padding = padding;
+  };
+  if (change.default_link_padding) pad("", *change.default_link_padding);
+  for (const auto &[link, padding] : change.link_padding) pad(link, padding);
+  for (const auto &[link, scale] : change.link_scale) {
+    message.link_scale.emplace_back();
+    message.link_scale.back().link_name = link;
+    message.link_scale.back().scale = scale;
+  }
+  for (const AllowedPair &pair : change.allowed) {
+    message.allowed_contacts.emplace_back();
+    message.allowed_contacts.back().first = pair.a;
+    message.allowed_contacts.back().second = pair.b;
+    message.allowed_contacts.back().allowed = pair.allowed;
+  }
 }
 
 } // namespace
@@ -116,8 +117,7 @@ Operation toOperation(const CollisionObject &message) {
   try {
     out.kind = toKind(message.operation);
     if (out.kind == Operation::Kind::REMOVE) return out;
-    const bool optional = out.kind != Operation::Kind::MOVE;
-    if (!optional || !isUnset(message.pose)) out.object.pose = toIsometry(message.pose);
+    if (out.kind == Operation::Kind::MOVE || !isUnset(message.pose)) out.object.pose = toIsometry(message.pose);
     out.object.shapes = toShapes(message);
     if (!message.trajectory.waypoints.empty()) out.trajectory = toTrajectory(message.trajectory);
   } catch (const Error &error) {
@@ -210,12 +210,12 @@ void toMessage(const Snapshot &snapshot, const std::vector<std::string> &ids, Ge
     response.attached_collision_objects.push_back(
         toMessage(Attachment{Attachment::Kind::ATTACH, object.link, object.touch_links, object.description, {}}));
   }
-  for (const auto &scale : snapshot.linkScales()) response.link_scale.push_back(toScaleMessage(scale));
-  if (snapshot.defaultLinkPadding() != 0.0)
-    response.link_padding.push_back(toPaddingMessage("", snapshot.defaultLinkPadding()));
-  for (const auto &padding : snapshot.linkPaddings())
-    response.link_padding.push_back(toPaddingMessage(padding.first, padding.second));
-  for (const AllowedPair &pair : snapshot.allowed()) response.allowed_contacts.push_back(toContactMessage(pair));
+  SceneChange sizes;
+  if (snapshot.defaultLinkPadding() != 0.0) sizes.default_link_padding = snapshot.defaultLinkPadding();
+  sizes.link_padding = snapshot.linkPaddings();
+  sizes.link_scale = snapshot.linkScales();
+  sizes.allowed = snapshot.allowed();
+  addSizes(sizes, response);
 }
 
 ApplySceneRequest toMessage(const SceneChange &change) {
@@ -226,13 +226,9 @@ ApplySceneRequest toMessage(const SceneChange &change) {
     request.objects.back().operation = toOperationByte(operation.kind);
     if (operation.trajectory) request.objects.back().trajectory = toMessage(*operation.trajectory);
   }
-  if (change.default_link_padding) request.link_padding.push_back(toPaddingMessage("", *change.default_link_padding));
-  for (const auto &padding : change.link_padding)
-    request.link_padding.push_back(toPaddingMessage(padding.first, padding.second));
   for (const Attachment &attachment : change.attachments)
     request.attached_collision_objects.push_back(toMessage(attachment));
-  for (const auto &scale : change.link_scale) request.link_scale.push_back(toScaleMessage(scale));
-  for (const AllowedPair &pair : change.allowed) request.allowed_contacts.push_back(toContactMessage(pair));
+  addSizes(change, request);
   return request;
 }
 

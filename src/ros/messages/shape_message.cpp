@@ -48,10 +48,6 @@ ShapeDescription toShape(const shape_msgs::Mesh &mesh) {
   return shape;
 }
 
-OctreeData toOctree(const Octree &octree) {
-  return {octree.id, octree.resolution, octree.binary != 0, std::string(octree.data.begin(), octree.data.end())};
-}
-
 /** Does somebody mean the cloud? */
 bool isSet(const sensor_msgs::PointCloud2 &cloud) {
   return !cloud.fields.empty() || !cloud.data.empty() || cloud.width > 0;

@@ -7,6 +7,7 @@
 #include <curve_proximity/CollisionObject.h>
 
 #include <curve_proximity/scene.hpp>
+#include <string>
 #include <vector>
 
 namespace curve_proximity {
@@ -19,7 +20,11 @@ ShapeDescription toShape(const Body &body);
  *  above; poses that do not match the shapes; a cloud in another frame than the object's. */
 std::vector<ShapeDescription> toShapes(const CollisionObject &object);
 
-/** An octree as it stands in a message. */
+/** An octree as it stands in a message: ours, or that of octomap_msgs. */
+template <class Message>
+OctreeData toOctree(const Message &octree) {
+  return {octree.id, octree.resolution, octree.binary != 0, std::string(octree.data.begin(), octree.data.end())};
+}
 Octree toOctreeMessage(const OctreeData &octree);
 
 /** One shape more, in the list of the message that can hold it. Mesh files stay names of files. */

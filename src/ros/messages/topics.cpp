@@ -82,9 +82,7 @@ void fitNaturalSpline(const std::vector<geometry_msgs::Point> &points, const std
   Eigen::Vector3d next = Eigen::Vector3d::Zero();
   for (std::size_t i = n; i-- > 0;) {
     next = (right[i] - (i + 1 < n ? upper[i] : 0.0) * next) / diagonal[i];
-    curve.points[i + 1].x = next.x();
-    curve.points[i + 1].y = next.y();
-    curve.points[i + 1].z = next.z();
+    curve.points[i + 1] = toPointMessage(next);
   }
 }
 
@@ -237,12 +235,7 @@ std::vector<Curve> toCurves(const MultiDOFJointTrajectory &trajectory, double ra
   std::vector<Curve> curves;
   for (std::size_t j = 0; j < trajectory.joint_names.size(); ++j) {
     std::vector<geometry_msgs::Point> points(at.size());
-    for (std::size_t i = 0; i < at.size(); ++i) {
-      const cprox_vec3 p = poseOf(trajectory, i, j).position;
-      points[i].x = p.x;
-      points[i].y = p.y;
-      points[i].z = p.z;
-    }
+    for (std::size_t i = 0; i < at.size(); ++i) points[i] = toPointMessage(poseOf(trajectory, i, j).position);
     Curve curve;
     curve.header = trajectory.header;
     curve.id = trajectory.joint_names[j];
