@@ -51,14 +51,6 @@ std::optional<Frames::Place> Frames::now(const std::string &frame, const ros::Ti
   }
 }
 
-/** Why it makes no sense to wait for the frame; "" where it may come. */
-std::string Frames::unheard(const std::string &frame) const {
-  if (!settled() || buffer_._frameExists(frame)) return "";
-  std::vector<std::string> names;
-  buffer_._getFrameStrings(names);
-  return "nobody has published that frame" + didYouMean(frame, names);
-}
-
 void Frames::refuse(const std::string &frame, const ros::Time &stamp, const std::string &reason) const {
   std::ostringstream what;
   what << "no transform from frame '" << frame << "' to frame '" << fixed_frame_ << "' ";
@@ -77,8 +69,11 @@ Frames::Place Frames::place(const std::string &given, const ros::Time &stamp, Cl
   if (frame.empty() || frame == fixed_frame_) return {};
   std::string reason;
   if (const std::optional<Place> found = now(frame, stamp, reason)) return *found;
-  const std::string hopeless = unheard(frame);
-  if (!hopeless.empty()) refuse(frame, stamp, hopeless);
+  if (settled() && !buffer_._frameExists(frame)) { // it makes no sense to wait for it
+    std::vector<std::string> names;
+    buffer_._getFrameStrings(names);
+    refuse(frame, stamp, "nobody has published that frame" + didYouMean(frame, names));
+  }
 
   // tf2's own timeout counts in ROS time, which stands still without a clock: so ask without one, again and again.
   const Turn::Pause pause(turn);

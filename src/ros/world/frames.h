@@ -56,7 +56,6 @@ class Frames {
  private:
   std::optional<Place> now(const std::string &frame, const ros::Time &stamp, std::string &reason) const;
   [[noreturn]] void refuse(const std::string &frame, const ros::Time &stamp, const std::string &reason) const;
-  std::string unheard(const std::string &frame) const;
 
   const std::string fixed_frame_;
   const std::chrono::duration<double> timeout_;

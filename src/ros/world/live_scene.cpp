@@ -92,7 +92,10 @@ std::vector<std::string> LiveScene::apply(const SceneChange &change, const Snaps
   for (const Attachment &attachment : change.attachments)
     if (errors.empty() && attachment.kind == Attachment::Kind::ATTACH && !attachment.object.shapes.empty())
       unknowns.forget(REFUSED_OBJECT + attachment.object.id);
-  if (change.clear) forgetRefused();
+  if (change.clear) {
+    unknowns.forgetAll(REFUSED_OBJECT);
+    unknowns.forget(REFUSED_OBJECTS);
+  }
   return errors;
 }
 
@@ -106,7 +109,8 @@ void LiveScene::refuse(const std::string &topic, const std::string &id, const st
                        const std::string &why, std::size_t most_name) {
   constexpr std::size_t MOST = 1000;
   const std::string source = REFUSED_OBJECT + id;
-  if (id.size() > most_name || (unknowns.size() >= MOST && !unknowns.has(source)))
+  const UnknownsBySource others = unknowns.bySource();
+  if (id.size() > most_name || (others.size() >= MOST && others.count(source) == 0))
     return unknowns.set(REFUSED_OBJECTS,
                         {{topic + ": objects are not used, the last one because " + why, "", Missing::ANYTHING}});
   // as it was before it may be here still
@@ -114,11 +118,6 @@ void LiveScene::refuse(const std::string &topic, const std::string &id, const st
   const bool is_here = now->objects().count(id) + now->moving().count(id) + now->attached().count(id) > 0;
   unknowns.set(source, {{topic + ": object '" + id + "' is not used: " + why, about,
                          is_here ? Missing::ANYTHING : Missing::GEOMETRY}});
-}
-
-void LiveScene::forgetRefused() {
-  unknowns.forgetAll(REFUSED_OBJECT);
-  unknowns.forget(REFUSED_OBJECTS);
 }
 
 const std::vector<std::array<std::string, 2>> &LiveScene::disabled(const Snapshot &snapshot) const {

@@ -55,9 +55,6 @@ struct LiveScene {
   void refuse(const std::string &topic, const std::string &id, const std::string &about, const std::string &why,
               std::size_t most_name);
 
-  /** The scene was emptied, or a whole one has come: what was refused is of no matter. */
-  void forgetRefused();
-
   /** The pairs of links that are not checked against each other, beside the allowed pairs of the snapshot. */
   const std::vector<std::array<std::string, 2>> &disabled(const Snapshot &snapshot) const;
 

@@ -7,16 +7,6 @@
 #include <ros/param.h>
 
 namespace curve_proximity {
-
-ResourceOptions resourceOptions(const std::string &base_dir, const Parameters &parameters) {
-  ResourceOptions options;
-  options.memory_limit = static_cast<std::size_t>(parameters.max_shape_mb) << 20;
-  options.mesh_tolerance = parameters.mesh_tolerance;
-  options.base_dir = base_dir;
-  options.find_package = [](const std::string &package) { return ros::package::getPath(package); };
-  return options;
-}
-
 namespace {
 
 /** A text in the parameter of that name, searched upwards. The search begins above the server's own namespace, where
@@ -32,26 +22,6 @@ std::string findText(const ros::NodeHandle &handle, const std::string &wanted, c
                          wanted + "'");
   return "";
 }
-
-} // namespace
-
-Srdf loadSrdf(const ros::NodeHandle &handle, const Parameters &parameters) {
-  std::string name;
-  const std::string xml = findText(handle, parameters.robot_description_semantic,
-                                   Parameters().robot_description_semantic, "robot_description_semantic", "SRDF", name);
-  if (xml.empty()) {
-    ROS_INFO("there is no %s: pairs of links that the SRDF would disable are checked",
-             parameters.robot_description_semantic.c_str());
-    return {};
-  }
-  try {
-    return parseSrdf(xml);
-  } catch (const Error &error) {
-    throw Error("the SRDF in '" + name + "': " + error.what(), error.status());
-  }
-}
-
-namespace {
 
 std::shared_ptr<const Robot> parseRobot(const std::string &xml, const std::string &name, const Parameters &parameters) {
   // Geometry that is left out must never read as free space without a word.
@@ -74,6 +44,31 @@ std::shared_ptr<const Robot> parseRobot(const std::string &xml, const std::strin
 }
 
 } // namespace
+
+ResourceOptions resourceOptions(const std::string &base_dir, const Parameters &parameters) {
+  ResourceOptions options;
+  options.memory_limit = static_cast<std::size_t>(parameters.max_shape_mb) << 20;
+  options.mesh_tolerance = parameters.mesh_tolerance;
+  options.base_dir = base_dir;
+  options.find_package = [](const std::string &package) { return ros::package::getPath(package); };
+  return options;
+}
+
+Srdf loadSrdf(const ros::NodeHandle &handle, const Parameters &parameters) {
+  std::string name;
+  const std::string xml = findText(handle, parameters.robot_description_semantic,
+                                   Parameters().robot_description_semantic, "robot_description_semantic", "SRDF", name);
+  if (xml.empty()) {
+    ROS_INFO("there is no %s: pairs of links that the SRDF would disable are checked",
+             parameters.robot_description_semantic.c_str());
+    return {};
+  }
+  try {
+    return parseSrdf(xml);
+  } catch (const Error &error) {
+    throw Error("the SRDF in '" + name + "': " + error.what(), error.status());
+  }
+}
 
 std::string robotText(const ros::NodeHandle &handle, const Parameters &parameters, std::string &name) {
   return findText(handle, parameters.robot_description, Parameters().robot_description, "robot_description", "URDF",

@@ -32,7 +32,7 @@ class SensorBoard {
 
   /** A message of this stamp had no valid point. */
   void sawNothing(const std::string &id, const ros::Time &stamp) {
-    set(id, {Age(stamp), true});
+    change(id, [&](Sensor &sensor) { sensor = {Age(stamp), true}; });
   }
 
   /** A message came that cannot be used: the object is as old as before, and what is there now is not known. */
@@ -42,7 +42,7 @@ class SensorBoard {
 
   /** A sensor is expected to show the object; no message has come since the server started. */
   void awaits(const std::string &id) {
-    set(id, {std::nullopt, true});
+    change(id, [](Sensor &sensor) { sensor = {std::nullopt, true}; });
   }
 
   /** While this lives a change empties the scene, but for some objects. From then on nothing is known of what sensors
@@ -107,10 +107,6 @@ class SensorBoard {
     std::optional<Age> age;
     bool unknown = false;
   };
-
-  void set(const std::string &id, const Sensor &now) {
-    change(id, [&](Sensor &sensor) { sensor = now; });
-  }
 
   template <class Work>
   void change(const std::string &id, Work &&work) {

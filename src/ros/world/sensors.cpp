@@ -6,19 +6,18 @@
 #include <utility>
 
 #include "messages/cloud.h"
+#include "messages/shape_message.h"
 #include "transport/checked_stream.h"
 #include "transport/guard.h"
 
 namespace curve_proximity {
+
 Sensors::Sensors(const ros::NodeHandle &handle, const Parameters &parameters, LiveScene &live, const Frames &frames)
     : parameters_(parameters), live_(live), frames_(frames), handle_(onQueue(handle, queue_)) {
-  ros::SubscribeOptions topics[] = {
-      checkedSubscription<sensor_msgs::PointCloud2>(
-          "cloud", 1, [this](const sensor_msgs::PointCloud2ConstPtr &message) { takeCloud(message); }),
-      checkedSubscription<octomap_msgs::Octomap>(
-          "octomap", 1, [this](const octomap_msgs::Octomap::ConstPtr &message) { takeOctomap(message); })};
   for (const std::string &id : parameters.expected_sensors) live_.sensors.awaits(id);
-  for (ros::SubscribeOptions &topic : topics) subscribers_.push_back(handle_.subscribe(topic));
+  const auto hear = [this](ros::SubscribeOptions topic) { subscribers_.push_back(handle_.subscribe(topic)); };
+  hear(checkedSubscription<sensor_msgs::PointCloud2>("cloud", 1, [this](const auto &message) { takeCloud(message); }));
+  hear(checkedSubscription<octomap_msgs::Octomap>("octomap", 1, [this](const auto &message) { takeOctomap(message); }));
   queue_.start();
 }
 
@@ -59,8 +58,7 @@ void Sensors::takeOctomap(const octomap_msgs::Octomap::ConstPtr &message) {
     ShapeDescription shape;
     shape.type = ShapeType::OCTREE;
     shape.unknown_is_occupied = parameters_.unknown_is_occupied;
-    shape.octree = {message->id, message->resolution, message->binary != 0,
-                    std::string(message->data.begin(), message->data.end())};
+    shape.octree = toOctree(*message);
     replace(parameters_.octomap_id, message->header, std::move(shape));
   });
 }

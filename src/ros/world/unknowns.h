@@ -54,17 +54,6 @@ class Unknowns {
       if (source.first.compare(0, prefix.size(), prefix) == 0) forget(source.first);
   }
 
-  bool has(const std::string &source) const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return sources_.count(source) > 0;
-  }
-
-  /** How many sources there are. */
-  std::size_t size() const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return sources_.size();
-  }
-
   UnknownsBySource bySource() const {
     const std::lock_guard<std::mutex> lock(mutex_);
     return sources_;
