@@ -11,8 +11,8 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
-#include <sstream>
 
+#include "messages/geometry_message.h"
 #include "transport/checked_stream.h"
 
 namespace curve_proximity {
@@ -21,11 +21,16 @@ namespace {
 using moveit::PlanningScene;
 using Bytes = std::vector<std::uint8_t>;
 
+template <class Content>
+Content contentOf(const std::string &path) {
+  std::ifstream file(path, std::ios::binary);
+  EXPECT_TRUE(file.good()) << path;
+  return Content(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+}
+
 /* A message that moveit_msgs's own classes wrote. */
 Bytes recorded(const std::string &name) {
-  std::ifstream file(std::string(CURVE_PROXIMITY_MOVEIT_DATA) + "/" + name + ".bin", std::ios::binary);
-  EXPECT_TRUE(file.good()) << name;
-  return Bytes(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+  return contentOf<Bytes>(CURVE_PROXIMITY_MOVEIT_DATA "/" + name + ".bin");
 }
 
 /* Throws ros::serialization::StreamOverrunException. */
@@ -36,37 +41,12 @@ PlanningScene read(Bytes bytes) {
   return message;
 }
 
-std::string armUrdf() {
-  std::ifstream file(CURVE_PROXIMITY_ARM);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
 Eigen::Isometry3d translation(double x, double y, double z) {
   return Eigen::Isometry3d(Eigen::Translation3d(x, y, z));
 }
 
 geometry_msgs::Pose poseAt(double x, double y, double z) {
-  geometry_msgs::Pose pose;
-  pose.position.x = x;
-  pose.position.y = y;
-  pose.position.z = z;
-  pose.orientation.w = 1.0;
-  return pose;
-}
-
-moveit::CollisionObject ball(const std::string &id, double radius, const geometry_msgs::Pose &pose,
-                             std::int8_t operation = moveit::CollisionObject::ADD) {
-  moveit::CollisionObject object;
-  object.id = id;
-  object.header.frame_id = "world";
-  object.pose = pose;
-  object.operation = operation;
-  object.primitives.resize(1);
-  object.primitives[0].type = shape_msgs::SolidPrimitive::SPHERE;
-  object.primitives[0].dimensions.assign(1, radius);
-  return object;
+  return toMessage(translation(x, y, z));
 }
 
 moveit::CollisionObject named(const std::string &id, std::int8_t operation) {
@@ -74,6 +54,16 @@ moveit::CollisionObject named(const std::string &id, std::int8_t operation) {
   object.id = id;
   object.header.frame_id = "world";
   object.operation = operation;
+  return object;
+}
+
+moveit::CollisionObject ball(const std::string &id, double radius, const geometry_msgs::Pose &pose,
+                             std::int8_t operation = moveit::CollisionObject::ADD) {
+  moveit::CollisionObject object = named(id, operation);
+  object.pose = pose;
+  object.primitives.resize(1);
+  object.primitives[0].type = shape_msgs::SolidPrimitive::SPHERE;
+  object.primitives[0].dimensions.assign(1, radius);
   return object;
 }
 
@@ -100,10 +90,10 @@ void turnTo(double angle, PlanningScene &scene) {
 
 /* A scene that follows. The arm stands in `world`, where its base is. */
 struct Planning : ::testing::Test {
-  const std::shared_ptr<const Robot> robot = Robot::fromUrdf(armUrdf());
+  const std::shared_ptr<const Robot> robot = Robot::fromUrdf(contentOf<std::string>(CURVE_PROXIMITY_ARM));
   Scene scene{robot};
   PlanningSceneState state;
-  std::vector<std::string> kept;
+  std::set<std::string> kept;
   std::vector<std::string> wrong;
 
   PlanningSceneContext context(const Snapshot &before) {

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <curve_proximity/nearest_name.hpp>
 #include <optional>
-#include <set>
 
 #include "messages/geometry_message.h"
 #include "messages/scene_message.h"
+#include "messages/shape_message.h"
 
 namespace curve_proximity {
 namespace {
@@ -100,18 +100,16 @@ std::map<Names, bool> toMatrix(const moveit::AllowedCollisionMatrix &message) {
   if (message.default_entry_names.size() != message.default_entry_values.size())
     throw Error(std::to_string(message.default_entry_names.size()) + " default_entry_names have " +
                 std::to_string(message.default_entry_values.size()) + " default_entry_values");
-  std::map<Names, bool> out;
-  std::map<std::string, bool> defaults;
+  std::map<Names, bool> out; // a default has an empty second name
   for (std::size_t i = 0; i < message.default_entry_names.size(); ++i) {
     if (message.default_entry_names[i].empty()) throw Error("a default has no name");
-    defaults[message.default_entry_names[i]] = message.default_entry_values[i] != 0;
+    out[{message.default_entry_names[i], ""}] = message.default_entry_values[i] != 0;
   }
-  for (const auto &[name, allowed] : defaults) out[{name, ""}] = allowed;
 
   const auto byDefault = [&](const std::string &a, const std::string &b) {
-    const auto of_a = defaults.find(a), of_b = defaults.find(b);
-    if (of_a == defaults.end() && of_b == defaults.end()) return false;
-    return (of_a == defaults.end() || of_a->second) && (of_b == defaults.end() || of_b->second);
+    const auto of_a = out.find({a, ""}), of_b = out.find({b, ""});
+    if (of_a == out.end() && of_b == out.end()) return false;
+    return (of_a == out.end() || of_a->second) && (of_b == out.end() || of_b->second);
   };
   for (std::size_t i = 0; i < n; ++i) {
     const std::string &name = message.entry_names[i];
@@ -137,11 +135,8 @@ class SceneReader {
       : message_(message), context_(context), robot_(context.before.robot().get()), full_(message.is_diff == 0) {
     out_.state = context.state;
     out_.change.attachments_first = true;
-    const bool all = !full_;
-    for (const auto &[id, object] : context.before.objects()) {
-      const bool kept = std::find(context.kept.begin(), context.kept.end(), id) != context.kept.end();
-      if (all || kept) standing_[id] = object->description.pose;
-    }
+    for (const auto &[id, object] : context.before.objects())
+      if (!full_ || context.kept.count(id) > 0) standing_[id] = object->description.pose;
     for (const auto &[id, object] : context.before.attached()) carried_[id] = {object->link, object->description.pose};
   }
 
@@ -149,7 +144,7 @@ class SceneReader {
     checkModel();
     if (full_) {
       out_.change.clear_objects = true;
-      out_.change.kept = context_.kept;
+      out_.change.kept.assign(context_.kept.begin(), context_.kept.end());
     }
     readTransforms();
     readRobotState();
@@ -451,12 +446,8 @@ class SceneReader {
       if (standing_.count(given.id) == 0) throw Error("there is no object of that id to remove");
       return removeOne(given.id);
     }
-    std::vector<std::string> all;
-    for (const auto &entry : standing_) {
-      const bool kept = std::find(context_.kept.begin(), context_.kept.end(), entry.first) != context_.kept.end();
-      if (!kept && entry.first != MOVEIT_OCTOMAP) all.push_back(entry.first);
-    }
-    for (const std::string &id : all) removeOne(id);
+    for (const std::string &id : namesOf(standing_))
+      if (context_.kept.count(id) == 0 && id != MOVEIT_OCTOMAP) removeOne(id);
   }
 
   void move(const moveit::CollisionObject &given) {
@@ -505,7 +496,7 @@ class SceneReader {
       ShapeDescription shape;
       shape.type = ShapeType::OCTREE;
       shape.unknown_is_occupied = context_.unknown_is_occupied;
-      shape.octree = {map.id, map.resolution, map.binary != 0, std::string(map.data.begin(), map.data.end())};
+      shape.octree = toOctree(map);
       out.object.shapes.push_back(std::move(shape));
       out_.change.operations.push_back(std::move(out));
     } catch (const std::exception &error) {
@@ -581,10 +572,8 @@ std::vector<std::string> differences(const PlanningScene &message, const Plannin
     if (operation.kind == Operation::Kind::ADD) wanted[named(operation.object.id, "")] = &operation.object;
   for (const Attachment &attachment : theirs.change.attachments)
     wanted[named(attachment.object.id, attachment.link)] = &attachment.object;
-  for (const auto &[id, object] : context.before.objects()) {
-    const bool kept = std::find(context.kept.begin(), context.kept.end(), id) != context.kept.end();
-    if (!kept || wanted.count(named(id, "")) > 0) here[named(id, "")] = &object->description;
-  }
+  for (const auto &[id, object] : context.before.objects())
+    if (context.kept.count(id) == 0 || wanted.count(named(id, "")) > 0) here[named(id, "")] = &object->description;
   for (const auto &[id, object] : context.before.attached()) here[named(id, object->link)] = &object->description;
   for (const auto &[name, object] : wanted) {
     const auto ours = here.find(name);

@@ -7,6 +7,7 @@
 #include <curve_proximity/scene.hpp>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -44,7 +45,7 @@ struct PlanningSceneChange {
 struct PlanningSceneContext {
   const Snapshot &before;
   const PlanningSceneState &state;
-  std::vector<std::string> kept; /**< objects that a full scene leaves: those of sensors */
+  std::set<std::string> kept; /**< objects that a full scene leaves: those of sensors */
   bool unknown_is_occupied = false;
   /** Both throw Error. A frame that neither the message nor the scene explains, in the fixed frame: */
   std::function<Eigen::Isometry3d(const std::string &frame)> to_fixed;

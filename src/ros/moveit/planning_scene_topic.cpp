@@ -120,7 +120,7 @@ PlanningSceneReport PlanningSceneTopic::report() const {
 /** Objects of sensors are not move_group's: a full scene leaves them. */
 PlanningSceneContext PlanningSceneTopic::context(const Snapshot &snapshot, FrameLookup &lookup) const {
   PlanningSceneContext out{snapshot, state_, {}, parameters_.unknown_is_occupied, {}, {}};
-  for (const SensorState &sensor : live_.sensors.states()) out.kept.push_back(sensor.id);
+  for (const SensorState &sensor : live_.sensors.states()) out.kept.insert(sensor.id);
   out.to_fixed = [&lookup](const std::string &frame) { return lookup.toFixed(frame, ros::Time()); };
   out.link_to_fixed = [this, &snapshot, &lookup](const std::string &link, const JointPositions &joints) {
     return link_pose_(link, joints, snapshot, lookup);

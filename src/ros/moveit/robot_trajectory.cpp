@@ -232,9 +232,9 @@ std::optional<moveit::ContactInformation> toContact(const Proximity &row, double
   const bool clear = row.verdict.empty() ? row.lower > epsilon : row.verdict == Proximity::VERDICT_CLEAR;
   if (clear) return std::nullopt;
   moveit::ContactInformation out;
+  out.contact_body_1 = row.a;
+  out.body_type_1 = bodyType(row.a, snapshot);
   if (!touches || !std::isfinite(row.upper)) {
-    out.contact_body_1 = row.a;
-    out.body_type_1 = bodyType(row.a, snapshot);
     out.contact_body_2 = "<" + (row.status == Proximity::STATUS_OK ? Proximity::VERDICT_UNDECIDED : row.status) + ">";
     out.body_type_2 = moveit::ContactInformation::WORLD_OBJECT;
     return out;
@@ -244,8 +244,6 @@ std::optional<moveit::ContactInformation> toContact(const Proximity &row, double
   out.position.z = 0.5 * (row.witness_a.z + row.witness_b.z);
   out.normal = row.normal;
   out.depth = -row.upper;
-  out.contact_body_1 = row.a;
-  out.body_type_1 = bodyType(row.a, snapshot);
   out.contact_body_2 = row.b;
   out.body_type_2 = bodyType(row.b, snapshot);
   return out;
