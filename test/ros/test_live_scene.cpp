@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <functional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -45,7 +44,7 @@ bool isFalselyClear(const LiveScene::Seen &seen) {
 }
 
 /* A sensor shows its cloud 400 times while the scene is changed by `emptied`, and read by two threads. */
-void stress(const std::function<SceneChange()> &emptied) {
+void stress(const SceneChange &emptied) {
   LiveScene live(nullptr, Srdf(), ResourceOptions());
   live.sensors.awaits(CLOUD);
   std::atomic<bool> done{false};
@@ -61,7 +60,7 @@ void stress(const std::function<SceneChange()> &emptied) {
     });
   }
   threads.emplace_back([&] {
-    while (!done) apply(live, emptied());
+    while (!done) apply(live, emptied);
   });
   for (int i = 0; i < 400 || there == 0 || gone == 0; ++i) {
     show(live);
@@ -74,20 +73,16 @@ void stress(const std::function<SceneChange()> &emptied) {
 }
 
 TEST(LiveScene, a_cloud_that_a_clear_takes_away_is_unknown_at_once) {
-  stress([] {
-    SceneChange change;
-    change.clear = true;
-    return change;
-  });
+  SceneChange clear;
+  clear.clear = true;
+  stress(clear);
 }
 
 /* A whole scene of move_group keeps the objects of those sensors that were known when it was made. */
 TEST(LiveScene, a_cloud_that_a_whole_scene_takes_away_is_unknown_at_once) {
-  stress([] {
-    SceneChange change;
-    change.clear_objects = true;
-    return change;
-  });
+  SceneChange whole;
+  whole.clear_objects = true;
+  stress(whole);
 }
 
 TEST(LiveScene, a_whole_scene_leaves_what_it_keeps_known) {
