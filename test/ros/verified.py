@@ -267,12 +267,14 @@ class Verified(ArmCase):
         topic, passed = self.publisher('/gate/curve', Curve), heard('/gate/clear_curve', Curve)
         curve = bezier((-1, 0.5, 2), (0, 0.7, 2), (1, 0.5, 2), id='c', radius=0.1)
         self.assertTrue(until(lambda: all(server.distance(curve).success for server in (self.reading, self.server)), 5))
-        for blocked, lie in ((False, None), (True, None), (True, self.asking())):
+        unreadable = bezier((-1, 0.5, 2), (1, 0.5, 2), id='c' * 10000)
+        renamed = self.asking(lambda request: setattr(request.query.curves[0], 'id', 'c'))
+        for asked, blocked, lie in ((curve, False, None), (curve, True, None), (curve, True, self.asking()), (unreadable, True, renamed)):
             if blocked:
                 self.everywhere(sphere('post', 0.1, (0, 0.6, 2)))
             del self.refused[:], passed[:]
             self.liar.lie = lie
-            topic.publish(curve)
+            topic.publish(asked)
             self.assertTrue(until(lambda: passed or self.refused, 5))
             self.assertEqual((len(passed), len(self.refused)), (0, 1) if blocked else (1, 0), [r.message for r in self.refused])
 

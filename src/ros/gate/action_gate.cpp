@@ -80,25 +80,18 @@ bool ActionGate::forget(const RunningPointer &running) {
 
 /* ---- a new goal ---- */
 
-bool ActionGate::isClear(const JointTrajectory &trajectory, ProximityQuery &query, SeenScene &scene, Refusal &refusal) {
-  bool clear = false;
-  guarded(
-      [&] {
-        query.trajectories = {watches_->fromHere(trajectory)};
-        query.current_joints = true;
-        query.self_collision = parameters_.self_collision;
-        clear = calls_.isClear(query, scene, refusal);
-      },
-      [&](const std::string &why) { refusal.message = why; });
-  return clear;
-}
-
 void ActionGate::begin(Server::GoalHandle goal) {
   const JointTrajectory &trajectory = goal.getGoal()->trajectory;
   Refusal refusal;
   ProximityQuery query;
   SeenScene scene;
-  bool passes = trajectory.points.empty() || isClear(trajectory, query, scene, refusal);
+  const auto asked = [&]() -> const ProximityQuery & {
+    query.trajectories = {watches_->fromHere(trajectory)};
+    query.current_joints = true;
+    query.self_collision = parameters_.self_collision;
+    return query;
+  };
+  bool passes = trajectory.points.empty() || calls_.isClear(asked, scene, refusal);
   if (passes && !client_->isServerConnected()) {
     refusal = refusalBecause(lostController(), SceneState());
     passes = false;

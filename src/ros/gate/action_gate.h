@@ -51,8 +51,6 @@ class ActionGate {
   using RunningPointer = std::shared_ptr<Running>;
 
   void begin(Server::GoalHandle goal);
-  bool isClear(const trajectory_msgs::JointTrajectory &trajectory, ProximityQuery &query, SeenScene &scene,
-               Refusal &refusal);
   void send(const RunningPointer &running);
   void cancel(const Server::GoalHandle &goal);
   void stop(const RunningPointer &running, const std::string &why);

@@ -50,29 +50,32 @@ Refusal refusalBecause(const std::string &why, const SceneState &scene) {
   return out;
 }
 
-bool ServerCalls::isClear(const ProximityQuery &query, SeenScene &scene, Refusal &refusal) {
-  Tolerance call;
-  call.request.query = query;
-  call.request.query.certificate = proofs_ != nullptr;
-  call.request.delta = delta_;
-  scene.read = read(); // what comes from now on is looked at again
-  if (!tolerance_.call(call, PATIENCE)) {
-    refusal = refusalBecause("the server does not answer", scene.state);
-    return false;
-  }
-  const std::vector<Proximity> &rows = call.response.results;
-  bool clear = false;
-  refusal = refusalOf(rows, delta_, call.response.scene, clear);
-  scene.state = call.response.scene;
-  if (!call.response.success) refusal.message = call.response.message;
-  refusal.header.frame_id = call.response.frame_id;
-  if (!call.response.success || !clear) return false;
-  refusal.message = proofs_ ? proofs_->doubt(query, rows, delta_) : "";
-  return refusal.message.empty();
+bool ServerCalls::isClear(const Asked &query, SeenScene &scene, Refusal &refusal) {
+  bool passes = false;
+  guarded(
+      [&] {
+        Tolerance call;
+        const ProximityQuery &asked = query();
+        call.request.query = asked;
+        call.request.query.certificate = proofs_ != nullptr;
+        call.request.delta = delta_;
+        scene.read = read(); // what comes from now on is looked at again
+        if (!tolerance_.call(call, PATIENCE)) throw Error("the server does not answer");
+        const std::vector<Proximity> &rows = call.response.results;
+        bool clear = false;
+        refusal = refusalOf(rows, delta_, call.response.scene, clear);
+        scene.state = call.response.scene;
+        if (!call.response.success) refusal.message = call.response.message;
+        refusal.header.frame_id = call.response.frame_id;
+        if (!call.response.success || !clear) return;
+        refusal.message = proofs_ ? proofs_->doubt(asked, rows, delta_) : "";
+        passes = refusal.message.empty();
+      },
+      [&](const std::string &why) { refusal = refusalBecause(why, scene.state); });
+  return passes;
 }
 
-bool ServerCalls::isStillClear(const std::function<const ProximityQuery &()> &query, bool recent, SeenScene &scene,
-                               Refusal &refusal) {
+bool ServerCalls::isStillClear(const Asked &query, bool recent, SeenScene &scene, Refusal &refusal) {
   bool clear = false;
   guarded(
       [&] {
@@ -80,7 +83,7 @@ bool ServerCalls::isStillClear(const std::function<const ProximityQuery &()> &qu
         if (!tolerance_.call(call, LOOK_PATIENCE)) throw Error("the server does not answer");
         const SceneState &now = call.response.scene;
         clear = recent && now.epoch == scene.state.epoch && now.version == scene.state.version && read() == scene.read;
-        if (!clear) clear = isClear(query(), scene, refusal);
+        if (!clear) clear = isClear(query, scene, refusal);
       },
       [&](const std::string &why) { refusal = refusalBecause(why, scene.state); });
   return clear;

@@ -43,13 +43,15 @@ class ServerCalls {
     tolerance_.end();
   }
 
+  /** Makes the query; may throw Error. */
+  using Asked = std::function<const ProximityQuery &()>;
+
   /** True where all of it is clear; else `refusal` says what is not, or why there is no answer. `scene` becomes the one
    *  of the answer. */
-  bool isClear(const ProximityQuery &query, SeenScene &scene, Refusal &refusal);
+  bool isClear(const Asked &query, SeenScene &scene, Refusal &refusal);
 
   /** The same where the scene is another one than `scene`, or `recent` is false; else all of it was clear of that. */
-  bool isStillClear(const std::function<const ProximityQuery &()> &query, bool recent, SeenScene &scene,
-                    Refusal &refusal);
+  bool isStillClear(const Asked &query, bool recent, SeenScene &scene, Refusal &refusal);
 
  private:
   std::uint64_t read() const {

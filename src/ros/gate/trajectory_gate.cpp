@@ -79,7 +79,8 @@ void TrajectoryGate::judge(const std::string &topic, std::vector<Message> Proxim
   query.self_collision = query.current_joints && parameters_.self_collision;
   SeenScene scene;
   Refusal refusal;
-  if (!calls_.isClear(query, scene, refusal)) return refuse(std::move(refusal), motion);
+  if (!calls_.isClear([&]() -> const ProximityQuery & { return query; }, scene, refusal))
+    return refuse(std::move(refusal), motion);
   const std::lock_guard<std::mutex> lock(passing_);
   if (!query.trajectories.empty() && stops_ != stops)
     return refuse(refusalBecause("a stop came after it", scene.state), motion);
