@@ -3,11 +3,9 @@
 """demo.launch as it is: the Panda by robot_state_publisher, parameters from config/defaults.yaml, markers."""
 import math
 import os
-import subprocess
-import sys
 import tempfile
 
-from helpers import Case, Drawings, Server, bezier, box, joint_trajectory, joints, run, sphere, until
+from helpers import ROOT, Case, Drawings, Server, bezier, box, joint_trajectory, joints, run, sphere, until
 from draw_legend import clearance_colour  # helpers has put scripts/ on the path
 from visualization_msgs.msg import Marker
 
@@ -39,15 +37,10 @@ class Demo(Case):
         self.assertEqual({m.header.frame_id for markers in shown.values() for m in markers}, {'world'})
 
     def test_the_example_draws_the_clearance_of_each_link(self):
-        root = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..')
         with tempfile.TemporaryDirectory() as folder:
             picture = os.path.join(folder, 'profile.png')
-            done = subprocess.run([sys.executable, os.path.join(root, 'examples', 'client_profile.py'),
-                                   os.path.join(root, 'test', 'data', 'trajectories', 'panda_bookshelf_tall_0001_rrt.yaml'), picture],
-                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=60)
-            said = done.stdout.decode()
-            self.assertEqual(done.returncode, 0, said)
-            self.assertRegex(said, r'panda_hand +at least 0\.\d+ m, to table')
+            motion = os.path.join(ROOT, 'test', 'data', 'trajectories', 'panda_bookshelf_tall_0001_rrt.yaml')
+            self.assertRegex(self.output_of('client_profile.py', motion, picture), r'panda_hand +at least 0\.\d+ m, to table')
             with open(picture, 'rb') as stream:
                 self.assertEqual(stream.read(4), b'\x89PNG')
 

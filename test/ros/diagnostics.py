@@ -7,7 +7,7 @@ import rospy
 from curve_proximity.msg import Curve
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from dynamic_reconfigure.client import Client
-from helpers import LINE, Case, Server, bezier, cloud, ring_and_shells, run, sphere, status_of, transform
+from helpers import LINE, Case, Server, bezier, cloud, heard, ring_and_shells, run, sphere, status_of, transform
 from sensor_msgs.msg import PointCloud2
 from tf2_msgs.msg import TFMessage
 
@@ -17,9 +17,7 @@ ONLY_OBJECTS = dict(objects=['ball'])
 class Diagnostics(Case):
     @classmethod
     def setUpClass(cls):
-        cls.server = Server()
-        cls.seen = []
-        rospy.Subscriber('/diagnostics', DiagnosticArray, cls.seen.append)
+        cls.server, cls.seen = Server(), heard('/diagnostics', DiagnosticArray)
 
     def setUp(self):
         self.server.replace(sphere('ball', 0.25))

@@ -33,11 +33,12 @@ from trajectory_msgs.msg import (JointTrajectory, JointTrajectoryPoint, MultiDOF
                                  MultiDOFJointTrajectoryPoint)
 from visualization_msgs.msg import MarkerArray
 
-sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'scripts'))
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..')
+sys.path.append(os.path.join(ROOT, 'scripts'))
 from free_port import free_port  # noqa: E402,F401 (for the tests that start masters)
 
 BOX, SPHERE, CYLINDER, CONE = 1, 2, 3, 4
-ARM = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'data', 'arm.urdf')
+ARM = os.path.join(ROOT, 'test', 'ros', 'data', 'arm.urdf')
 
 
 class ActionClient(actionlib.SimpleActionClient):
@@ -492,6 +493,13 @@ class Case(unittest.TestCase):
         self.assertNotIn(code, (None, 0), output)
         self.assertGreater(code, 0, 'the node died of a signal: ' + output)
         return output
+
+    def output_of(self, *arguments):
+        """Of one of our examples that ends well."""
+        done = subprocess.run([sys.executable, os.path.join(ROOT, 'examples', arguments[0]), *arguments[1:]], stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, timeout=60, text=True)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        return done.stdout
 
     def row(self, response):
         """The one result of a call that succeeded."""

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the markers hold: where their points are is computed here anew. What robots look like: demo.py."""
 import math
-import struct
 import unittest
 
 import rospy
@@ -32,9 +31,8 @@ class Markers(unittest.TestCase):
         # two cells of 0.5 m beside each other at the origin's corner, and a block of 1 m: all eight children of its parent
         one = b'\x00\xc0' + b'\x03\x00' * 14
         for leaf, sizes in ((b'\x0a\x00', {0.5: [(0.25, 0.25, 0.25), (0.75, 0.25, 0.25)]}), (b'\xaa\xaa', {1.0: [(0.5, 0.5, 0.5)]})):
-            data = list(struct.unpack('%db' % len(one + leaf), one + leaf))
-            map_ = thing('map', bodies=[Body(type='octree', octree=Octree(binary=True, id='OcTree', resolution=0.5, data=data))])
-            self.server.replace(map_)
+            tree = Octree(binary=True, id='OcTree', resolution=0.5, data=list(memoryview(one + leaf).cast('b')))
+            self.server.replace(thing('map', bodies=[Body(type='octree', octree=tree)]))
             shown = self.drawn.shown(lambda s: {(m.type, m.scale.x) for m in s['scene']} == {(Marker.CUBE_LIST, x) for x in sizes}, 'scene')['scene']
             for marker in shown:
                 self.assertEqual(marker.type, Marker.CUBE_LIST)

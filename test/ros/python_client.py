@@ -1,19 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The Python client against the live node, and its example."""
-import os
-import subprocess
-import sys
-import unittest
-
 from curve_proximity_client import Client, Failure, bezier, body, box, bspline, sphere
-from helpers import Node, run
+from helpers import Case, Node, run
 
-EXAMPLE = os.path.join(os.path.dirname(os.path.abspath(__file__)), '../../examples/client.py')
 LINE = bezier([(0, 0, 1), (2, 0, 1)], id='line')
 
 
-class PythonClient(unittest.TestCase):
+class PythonClient(Case):
     @classmethod
     def setUpClass(cls):
         cls.client = Client(patience=20.0)
@@ -91,19 +85,13 @@ class PythonClient(unittest.TestCase):
             node.end()
 
     def test_the_example_runs(self):
-        done = subprocess.run([sys.executable, EXAMPLE], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=60)
-        said = done.stdout.decode()
-        self.assertEqual(done.returncode, 0, said)
+        said = self.output_of('client.py')
         self.assertIn('yes, proven', said)
         self.assertIn('to ball at t', said)
         self.assertEqual(said.count('\n'), 8, said)
 
-
     def test_each_provider_is_climbed_to_a_proof(self):
-        done = subprocess.run([sys.executable, EXAMPLE.replace('client.py', 'client_constraints.py')], stdout=subprocess.PIPE,
-                              stderr=subprocess.STDOUT, timeout=60)
-        said = done.stdout.decode()
-        self.assertEqual(done.returncode, 0, said)
+        said = self.output_of('client_constraints.py')
         self.assertEqual(said.count(': proven after'), 3, said)
 
 

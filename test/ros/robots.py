@@ -7,12 +7,11 @@ import os
 import signal
 import subprocess
 import tempfile
-import unittest
 
 import rospy
 import yaml
 from curve_proximity.msg import CollisionObject
-from helpers import LINE, Node, Server, connected, joints, run, sphere, until
+from helpers import LINE, Case, Node, Server, joints, run, sphere, until
 from sensor_msgs.msg import JointState
 
 DATA = os.path.dirname(os.path.abspath(__file__)) + '/../data'
@@ -20,7 +19,7 @@ NODES = DATA + '/../../nodes'
 CONFIG = DATA + '/../../rviz/curve_proximity.rviz'
 
 
-class Robots(unittest.TestCase):
+class Robots(Case):
     def launch(self, *arguments):
         log = tempfile.NamedTemporaryFile('w+', suffix='.log')
         process = subprocess.Popen(['roslaunch', 'curve_proximity', *arguments], stdout=log, stderr=subprocess.STDOUT)
@@ -55,9 +54,7 @@ class Robots(unittest.TestCase):
 
     def assertViewFits(self):
         """RViz shows the robot as it stands, though nobody has asked, and looks at all of it."""
-        states = rospy.Publisher('/joint_states', JointState, queue_size=1)
-        self.assertTrue(connected(states))
-        states.publish(self.ready())
+        self.publisher('/joint_states', JointState).publish(self.ready())
         printed = subprocess.check_output([NODES + '/show_in_rviz.py', CONFIG, '--server', 'any', '--print'], timeout=30)
         config = yaml.safe_load(printed)['Visualization Manager']
         self.assertIn('/any/markers', [display.get('Marker Topic') for display in config['Displays']])
@@ -95,9 +92,7 @@ class Robots(unittest.TestCase):
         self.assertEqual((left.distance(LINE).results[0].b, right.distance(LINE).results[0].b), ('ball', 'other'))
         self.assertNotEqual(left.scene().scene.epoch, right.scene().scene.epoch)
         # a topic is one server's, too
-        topic = rospy.Publisher('/left/curve_proximity/collision_object', CollisionObject, queue_size=5)
-        self.assertTrue(connected(topic))
-        topic.publish(sphere('third', 0.1, (0, 0, 5)))
+        self.publisher('/left/curve_proximity/collision_object', CollisionObject).publish(sphere('third', 0.1, (0, 0, 5)))
         self.assertTrue(until(lambda: len(left.scene().objects) == 2, 10))
         self.assertEqual([o.id for o in right.scene().objects], ['other'])
 

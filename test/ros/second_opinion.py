@@ -7,7 +7,7 @@ import tempfile
 import rospy
 from curve_proximity.msg import Body
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from helpers import Case, Server, bezier, body, run, sphere, status_of, thing, until
+from helpers import Case, Server, bezier, body, heard, run, sphere, status_of, thing, until
 from rosgraph_msgs.msg import Log
 
 LINE = bezier((-1, 0, 1), (1, 0, 1), id='line')
@@ -17,10 +17,7 @@ FACET = 'facet normal 0 0 1\nouter loop\nvertex -1 -1 {z}\nvertex 1 -1 {z}\nvert
 class SecondOpinion(Case):
     @classmethod
     def setUpClass(cls):
-        cls.server = Server()
-        cls.seen = []
-        rospy.Subscriber('/diagnostics', DiagnosticArray, cls.seen.append)
-        cls.lines = []
+        cls.server, cls.seen, cls.lines = Server(), heard('/diagnostics', DiagnosticArray), []
         log = rospy.Subscriber('/rosout', Log, lambda line: cls.lines.append((line.level, line.msg)))
         assert until(log.get_num_connections, 8), 'the node has no log'
 

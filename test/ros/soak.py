@@ -149,15 +149,6 @@ class Soak:
                 self.counts[name] += n
 
     # ---- in processes of their own
-    def asks(self, seed):
-        self.follow('honest', seed, CLIENTS, CURVES)
-
-    def is_malformed(self, seed):
-        self.follow('malformed', seed)
-
-    def is_heavy(self, seed):
-        self.follow('heavy', seed, 3)
-
     def follow(self, part, seed, *more):
         """Reads what a process reports."""
         arguments = [part, seed, self.end, *more]
@@ -229,33 +220,26 @@ class Soak:
             raw_call('/%s/%s' % (NODE, service), kind, data)
             self.add(large=1)
 
-    def together(self, works, seconds, meanwhile=lambda: time.sleep(0.1)):
-        """Lets (work, threads) go on for so long."""
-        begin = time.monotonic()
-        self.end = begin + seconds
-        threads = [threading.Thread(target=work, args=(i,), daemon=True) for work, n in works for i in range(n)]
-        for thread in threads:
-            thread.start()
-        while self.going():
-            meanwhile()
-        for thread in threads:
-            thread.join(90)
-
     def run(self):
         broadcaster = StaticTransformBroadcaster()  # no way leads from it to the node's frame
         broadcaster.sendTransform(transform('elsewhere', 'island'))
         memory = [self.nodes[0].resident_mb()]
-        begin, next_report = time.monotonic(), time.monotonic()
-
-        def look():
-            nonlocal next_report
+        begin = next_report = time.monotonic()
+        self.end = begin + self.seconds
+        works = [(lambda seed: self.follow('honest', seed, CLIENTS, CURVES), PROCESSES), (self.changes, 1),
+                 (lambda seed: self.follow('heavy', seed, 3), 1), (self.loses_frames, 4),
+                 (lambda seed: self.follow('malformed', seed), 4), (self.is_large, SENDERS)]
+        threads = [threading.Thread(target=work, args=(i,), daemon=True) for work, n in works for i in range(n)]
+        for thread in threads:
+            thread.start()
+        while self.going():
             memory.append(self.nodes[0].resident_mb())
             if time.monotonic() > next_report:
                 next_report = time.monotonic() + max(5.0, self.seconds / 20)
                 print('%6.0f s  %5.0f MB  %s' % (time.monotonic() - begin, memory[-1], self.counted()), flush=True)
             time.sleep(0.01)
-        self.together([(self.asks, PROCESSES), (self.changes, 1), (self.is_heavy, 1), (self.loses_frames, 4), (self.is_malformed, 4), (self.is_large, SENDERS)],
-                      self.seconds, look)
+        for thread in threads:
+            thread.join(90)
         time.sleep(3)
         return self.report(memory, sorted(self.waits), begin)
 
@@ -276,8 +260,8 @@ class Soak:
             return '%-7s %s: %s' % ('passed' if good else 'FAILED', what, value)
 
         text = ['seconds %.0f' % (time.monotonic() - begin), str(counts),
-                'memory [MB]: at rest before %.0f and after %.0f' % (memory[0], rest)]
-        text += ['an honest client [ms]: p50 %.2f, p99 %.2f, worst %.1f' % (quantile(0.5), quantile(0.99), quantile(0.9999999)),
+                'memory [MB]: at rest before %.0f and after %.0f' % (memory[0], rest),
+                'an honest client [ms]: p50 %.2f, p99 %.2f, worst %.1f' % (quantile(0.5), quantile(0.99), quantile(0.9999999)),
                  demand('the node lives', 'yes' if alive else self.nodes[0].output()[-2000:], alive),
                  demand('wrong answers, failed calls, processes that ended badly', '%(wrong)d, %(failures)d, %(ended_badly)d' % bad,
                         counts.get('calls', 0) > 0 and sum(bad.values()) == 0),

@@ -6,7 +6,7 @@ import time
 
 import rospy
 from curve_proximity.msg import AttachedCollisionObject, CollisionObject, Curve, ProximityResults
-from helpers import (Case, Server, bezier, box, connected, fingerprint, free_flight, joint_trajectory, mesh, path, run, serialized,
+from helpers import (Case, Server, bezier, box, connected, fingerprint, free_flight, heard, joint_trajectory, mesh, path, run, serialized,
                      sphere, transform, until)
 from nav_msgs.msg import Path
 from tf2_msgs.msg import TFMessage
@@ -21,16 +21,15 @@ class Topics(Case):
     @classmethod
     def setUpClass(cls):
         cls.server = Server()
-        cls.results, cls.passed = [], []
+        cls.results, cls.passed = heard('/curve_proximity/proximity', ProximityResults), []
         cls.publishers = {topic: rospy.Publisher('/curve_proximity/' + topic, kind, queue_size=200)
                           for topic, kind in cls.TYPES.items()}
         cls.objects = rospy.Publisher('/curve_proximity/collision_object', CollisionObject, queue_size=200)
-        heard = [rospy.Subscriber('/curve_proximity/proximity', ProximityResults, cls.results.append)]
-        heard += [rospy.Subscriber('/gate/clear_' + topic, kind, cls.passed.append) for topic, kind in cls.TYPES.items()]
+        passed = [rospy.Subscriber('/gate/clear_' + topic, kind, cls.passed.append) for topic, kind in cls.TYPES.items()]
         cls.carried = rospy.Publisher('/curve_proximity/attached_collision_object', AttachedCollisionObject, queue_size=20)
         cls.transforms = rospy.Publisher('/tf', TFMessage, queue_size=10)
         # the manager listens to each publisher once, for the server and the gate
-        assert connected(*cls.publishers.values(), cls.objects, cls.carried, *heard)
+        assert connected(*cls.publishers.values(), cls.objects, cls.carried, *passed)
         time.sleep(0.5)
 
     def setUp(self):

@@ -179,27 +179,21 @@ class Verified(ArmCase):
 
     def test_a_proof_of_another_time_is_caught(self):
         kept = []
-
-        def keep(request):
-            kept.append(self.liar.honest(request))
-            return kept[-1]
-        self.liar.lie = keep
+        self.liar.lie = lambda request: kept.append(self.liar.honest(request)) or kept[-1]
         self.assertEqual(self.send()[0], GoalStatus.SUCCEEDED)
         self.arm.rest()
         self.everywhere(FAR, POST)
         self.caught(lambda request: kept[0], 'an old answer')
 
     def test_a_proof_that_is_damaged_is_caught_although_the_motion_is_clear(self):
-        def honest(request):
-            return self.liar.honest(request)
         for name, change in (('cut', lambda proof: proof[:-1]), ('longer', lambda proof: proof + b'\0'), ('half', lambda proof: proof[:len(proof) // 2]),
                              ('noise', lambda proof: bytes(len(proof))), ('another format', put(0, '<4s', b'CPC2')),
                              ('negative limit', put(LIMIT, '<d', -1.0)), ('no number', put(LIMIT, '<d', float('nan')))):
-            self.assertIn('refused', self.caught(lambda request, change=change: proofs(honest(request), change), name))
+            self.assertIn('refused', self.caught(lambda request, change=change: proofs(self.liar.honest(request), change), name))
 
         def rows(change):
             def lie(request):
-                response = honest(request)
+                response = self.liar.honest(request)
                 response.results = change(response.results)
                 return response
             return lie

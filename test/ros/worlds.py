@@ -26,10 +26,6 @@ CELL = b'\x00\xc0' + b'\x03\x00' * 14 + b'\x02\x00'
 FREE_CELL = CELL[:-2] + b'\x01\x00'
 
 
-def signed(data):
-    return list(struct.unpack('%db' % len(data), data))
-
-
 class TestCase(Case):
     @classmethod
     def setUpClass(cls):
@@ -222,7 +218,7 @@ class Fast(Case):
 
 class Octrees(TestCase):
     def octomap(self, data, resolution=0.5, frame='', **fields):
-        out = octomap.Octomap(binary=True, id='OcTree', resolution=resolution, data=signed(data), **fields)
+        out = octomap.Octomap(binary=True, id='OcTree', resolution=resolution, data=list(memoryview(data).cast('b')), **fields)
         out.header.frame_id = frame
         return out
 
@@ -255,7 +251,7 @@ class Octrees(TestCase):
         def map_of(**fields):
             return thing('map', bodies=[Body(type='octree', **fields)])
 
-        octree = Octree(binary=True, id='OcTree', resolution=0.5, data=signed(CELL))
+        octree = Octree(binary=True, id='OcTree', resolution=0.5, data=list(memoryview(CELL).cast('b')))
         self.server.replace(map_of(octree=octree))
         self.assertNearest('map', 0.5)
         self.server.replace(self.server.scene().objects[0])
