@@ -17,12 +17,12 @@ class Batches(Case):
         cls.server = Server()
         cls.client = ActionClient('/curve_proximity/query', QueryAction)
 
-    def send(self, seconds=60, **fields):  # on a machine that builds beside it, too
+    def send(self, **fields):
         """One goal; its state and its result."""
         self.feedback = []
         own = {name: fields.pop(name) for name in ('query_type', 'delta') if name in fields}
         self.client.send_goal(QueryGoal(query=query(**fields), **own), feedback_cb=self.feedback.append)
-        self.assertTrue(self.client.wait_for_result(rospy.Duration(seconds)))
+        self.assertTrue(self.client.wait_for_result(rospy.Duration(60)))  # on a machine that builds beside it, too
         return self.client.get_state(), self.client.get_result()
 
     def test_a_batch_is_answered_as_the_service_answers_it(self):

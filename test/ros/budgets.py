@@ -94,7 +94,6 @@ class Budgets(Case):
         self.rows.append((what, 1e3 * took, len(data) / 1e6, answer.message[:60]))
         with self.subTest(what):
             self.assertLess(took, 2 * BUDGET + SLACK)
-        return answer
 
     def each(self, what, subject, those=None):
         """Every question about a subject."""

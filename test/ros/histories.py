@@ -31,12 +31,9 @@ def robot(reach):
 
 def write_scene(path, place):
     """A scene file of one object, or of none."""
+    filed = '{id: filed, primitives: [{type: sphere, dimensions: [%g]}], primitive_poses: [{position: [%g, %g, %g]}]}'
     with open(path, 'w') as file:
-        if place:
-            file.write('world: {collision_objects: [{id: filed, primitives: [{type: sphere, dimensions: [%g]}], '
-                       'primitive_poses: [{position: [%g, %g, %g]}]}]}\n' % (RADIUS, *place))
-        else:
-            file.write('world: {collision_objects: []}\n')
+        file.write('world: {collision_objects: [%s]}\n' % (filed % (RADIUS, *place) if place else ''))
 
 
 class World:

@@ -21,12 +21,6 @@ class Markers(unittest.TestCase):
     def setUpClass(cls):
         cls.server, cls.drawn = Server(), Drawings()
 
-    def scene_of(self, object_, kind):
-        self.server.replace(object_)
-        shown = self.drawn.shown(lambda s: len(s['scene']) >= 1 and s['scene'][0].type == kind, 'scene')['scene']
-        self.assertEqual({m.header.frame_id for m in shown}, {'world'})
-        return shown
-
     def test_an_octree_is_its_occupied_cells(self):
         # two cells of 0.5 m beside each other at the origin's corner, and a block of 1 m: all eight children of its parent
         one = b'\x00\xc0' + b'\x03\x00' * 14
@@ -42,7 +36,9 @@ class Markers(unittest.TestCase):
 
     def test_a_superquadric_is_its_surface(self):
         axes, exponents = (0.2, 0.3, 0.5), (2.0, 4.0, 6.0)
-        marker, = self.scene_of(body('can', 'superquadric', (*axes, *exponents)), Marker.TRIANGLE_LIST)
+        self.server.replace(body('can', 'superquadric', (*axes, *exponents)))
+        marker, = self.drawn.shown(lambda s: s['scene'][0].type == Marker.TRIANGLE_LIST, 'scene')['scene']
+        self.assertEqual(marker.header.frame_id, 'world')
         self.assertGreater(len(marker.points), 1000)
         for p in coordinates(marker.points):
             value = sum(abs(x / a)**n for x, a, n in zip(p, axes, exponents))

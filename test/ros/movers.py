@@ -202,17 +202,6 @@ class Movers(Case):
         row = self.assertDistance(self.server.distance([], paths=[way], body=sphere('pea', 0.1)), 'pea', 1 - 0.25 - 0.1)
         self.assertAlmostEqual(row.witness_a.x, 0.25, delta=1e-2)  # the header's, where the first pose has none
 
-    def shown(self, ask):
-        """The markers of what moves after `ask`, and what that returns."""
-        drawings = Drawings()
-        try:
-            # the scene is another one than in earlier drawings
-            self.assertTrue(until(lambda: drawings.arrays and 'movers' not in {m.ns for m in drawings.arrays[-1].markers}, 10))
-            answer = ask()
-            return drawings.shown(lambda s: True, 'movers')['movers'], answer
-        finally:
-            drawings.subscriber.unregister()
-
     def test_a_body_along_a_path_is_shown_where_it_comes_closest(self):
         """A crank with a knob at its end turns from 0 to 90 degrees: the ball is 2 m away, in the direction of 30 degrees."""
         direction = math.radians(30)
@@ -220,8 +209,11 @@ class Movers(Case):
         crank = box('crank', (0.2, 0.1, 0.1), primitive_poses=[pose(), pose((0.5, 0, 0))])
         crank.primitives += sphere('knob', 0.1).primitives
         way = path((0, 3, 4), (0, 3, 4), frame='world', orientations=[turned(0), turned(math.radians(90))])
-        markers, response = self.shown(lambda: self.server.distance([], paths=[way], body=crank, objects=['ball']))
-        row = self.row(response)
+        drawings = Drawings()
+        # the scene is another one than in earlier drawings
+        self.assertTrue(until(lambda: drawings.arrays and 'movers' not in {m.ns for m in drawings.arrays[-1].markers}, 10))
+        row = self.row(self.server.distance([], paths=[way], body=crank, objects=['ball']))
+        markers = drawings.shown(lambda s: True, 'movers')['movers']
         self.assertAlmostEqual(row.upper, 2 - 0.5 - 0.1 - 0.25, delta=2e-6)
         self.assertAlmostEqual(row.t, 1 / 3, delta=3e-3)
         self.assertIn('its stamps are all the same: t counts its poses', row.message)

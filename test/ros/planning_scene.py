@@ -21,9 +21,9 @@ SWING = joint_trajectory(['turn'], [0.0], [1.0])
 CURVES = [bezier((2, -2, 1), (2, 2, 1), id='line'), bezier((0, 3, 0), (3, 3, 3), (3, 0, 0), id='bow')]
 
 
-def foreign(object, operation=0, frame='world', at=(0, 0, 0), subframes=()):
+def foreign(object, frame='world', at=(0, 0, 0), subframes=()):
     """An object of ours as MoveIt's."""
-    out = moveit.CollisionObject(id=object.id, pose=pose(at), operation=operation, primitives=object.primitives,
+    out = moveit.CollisionObject(id=object.id, pose=pose(at), primitives=object.primitives,
                                  meshes=object.meshes, planes=object.planes)
     out.header.frame_id = frame
     out.primitive_poses = [pose() for _ in object.primitives]
@@ -40,11 +40,9 @@ def attached(link, object, touch_links=()):
 
 def matrix(names, allowed, defaults=()):
     """An allowed collision matrix: pairs that may touch, and pairs of a name and its default."""
-    out = moveit.AllowedCollisionMatrix(entry_names=list(names))
-    out.entry_values = [moveit.AllowedCollisionEntry(enabled=[{a, b} in allowed for b in names]) for a in names]
-    out.default_entry_names = [name for name, _ in defaults]
-    out.default_entry_values = [value for _, value in defaults]
-    return out
+    entries = [moveit.AllowedCollisionEntry(enabled=[{a, b} in allowed for b in names]) for a in names]
+    return moveit.AllowedCollisionMatrix(entry_names=list(names), entry_values=entries, default_entry_names=[name for name, _ in defaults],
+                                         default_entry_values=[value for _, value in defaults])
 
 
 def full_scene():

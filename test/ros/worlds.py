@@ -162,8 +162,7 @@ class Clouds(TestCase):
                 row = server.distance(ABOVE, epsilon=EPSILON).results[0]
                 answers.append(row.upper)
 
-        asking = threading.Thread(target=ask)
-        asking.start()
+        asking = Call(ask)
 
         def changes():
             return sum(abs(a - b) > 0.1 for a, b in zip(answers, answers[1:]))
@@ -176,6 +175,7 @@ class Clouds(TestCase):
                 sent += 1
         stop.set()
         asking.join()
+        self.assertIsNone(asking.failure)
         self.assertNearest('cloud', 1.5 - RADIUS)
         for value in answers:
             self.assertTrue(min(abs(value - (1 - RADIUS)), abs(value - (1.5 - RADIUS))) < 1e-6, value)
