@@ -17,6 +17,9 @@ class TestCase(Case):
     def setUpClass(cls):
         cls.server = Server()
 
+    def setUp(self):
+        self.server.replace(sphere('ball', 0.25, (1, 0, 0)))  # 0.75 m below the middle of ABOVE
+
     def assertContains(self, row, true_distance):
         """The interval contains the true value (to the rounding of the value written here) and is narrow."""
         self.assertHolds(row.lower, row.upper, true_distance, EPSILON, 1e-15)
@@ -42,13 +45,11 @@ class Answers(TestCase):
         self.assertGreater(row.microseconds, 0)
 
     def test_tolerance_is_granted_below_the_distance_and_denied_above(self):
-        self.server.replace(sphere('ball', 0.25, (1, 0, 0)))
         self.assertEqual(self.row(self.server.tolerance(ABOVE, 0.7499)).verdict, 'clear')
         self.assertEqual(self.row(self.server.tolerance(ABOVE, 0.7501)).verdict, 'violated')
         self.assertIn(self.row(self.server.tolerance(ABOVE, 0.75)).verdict, ('violated', 'undecided'))
 
     def test_collision_tells_a_hit_from_a_miss(self):
-        self.server.replace(sphere('ball', 0.25, (1, 0, 0)))
         self.assertEqual(self.row(self.server.collision(ABOVE)).verdict, 'clear')
         through = bezier((0, 0, 0.1), (2, 0, 0.1))
         hit = self.row(self.server.collision(through))
@@ -90,7 +91,6 @@ class Answers(TestCase):
         self.assertRefused(self.server.apply(body('point', 'distance_grid', [1, 3, 3, 3], values=values)), 'neighbour')
 
     def test_what_does_not_apply_is_refused_and_named(self):
-        self.server.replace(sphere('ball', 0.25, (1, 0, 0)))
         self.assertRefused(self.server.collision(ABOVE, self_collision=True), 'self_collision')
 
     def test_poses_of_object_and_shape_are_chained(self):
@@ -127,7 +127,6 @@ class Answers(TestCase):
 
 class Scene(TestCase):
     def test_objects_are_added_moved_appended_and_removed(self):
-        self.server.replace(sphere('ball', 0.25, (1, 0, 0)))
         self.assertTrue(self.server.apply(thing('ball', (1, 0, -1), operation=CollisionObject.MOVE)).success)
         self.assertContains(self.distance(), 1.75)
 
@@ -178,9 +177,6 @@ class Scene(TestCase):
 
 class BadInput(TestCase):
     """Whatever is refused here, the node answers the next call."""
-
-    def setUp(self):
-        self.server.replace(sphere('ball', 0.25, (1, 0, 0)))
 
     def tearDown(self):
         self.assertContains(self.distance(objects=['ball']), 0.75)
@@ -355,9 +351,6 @@ class MeasurePairs(TestCase):
 
 
 class Large(TestCase):
-    def setUp(self):
-        self.server.replace(sphere('ball', 0.25, (1, 0, 0)))
-
     def test_a_spline_of_100000_control_points_is_answered(self):
         # a straight line in many pieces
         n = 100000

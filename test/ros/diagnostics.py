@@ -55,7 +55,6 @@ class Diagnostics(Case):
         time.sleep(0.3)
 
     def test_dropped_messages_are_told(self):
-        ring, balls, _ = ring_and_shells(shells=100)
         publisher = self.publisher('/curve_proximity/curve', Curve, queue_size=200)
         self.say_where('island', 'sea')
         for i in range(100):

@@ -94,14 +94,10 @@ def moving(thing, *waypoints, **fields):
     return thing
 
 
-def bezier(*points, **fields):
-    """A Bezier curve; further fields of the message by name, frame and stamp among them."""
-    curve = Curve(basis='bezier', points=[point(p) for p in points])
-    curve.header.frame_id = fields.pop('frame', '')
-    curve.header.stamp = fields.pop('stamp', rospy.Time())
-    for name, value in fields.items():
-        setattr(curve, name, value)
-    return curve
+def bezier(*points, frame='', stamp=None, **fields):
+    """A Bezier curve; further fields of the message by name."""
+    header = Header(frame_id=frame, stamp=stamp or rospy.Time())
+    return Curve(**dict(dict(header=header, basis='bezier', points=[point(p) for p in points]), **fields))
 
 
 LINE = bezier((-1, 0, 1), (1, 0, 1))
@@ -118,11 +114,8 @@ def bspline(points, degree, knots=None, **fields):
 
 def thing(name, position=(0, 0, 0), frame='', **fields):
     """An object without shapes."""
-    result = CollisionObject(id=name, pose=pose(position), operation=CollisionObject.ADD)
-    result.header.frame_id = frame
-    for field, value in fields.items():
-        setattr(result, field, value)
-    return result
+    header = Header(frame_id=frame)
+    return CollisionObject(**dict(dict(header=header, id=name, pose=pose(position), operation=CollisionObject.ADD), **fields))
 
 
 def solid(name, kind, dimensions, position=(0, 0, 0), **fields):
@@ -485,14 +478,11 @@ class Case(unittest.TestCase):
     def stopped(self, **parameters):
         """What a node said that ended by itself, with a failure, since it could not use these parameters."""
         node = Node('wrong', **parameters)
-        try:
-            code = node.wait(20)
-            output = node.output()
-        finally:
-            node.end()
-        self.assertNotIn(code, (None, 0), output)
-        self.assertGreater(code, 0, 'the node died of a signal: ' + output)
-        return output
+        self.addCleanup(node.end)
+        code = node.wait(20)
+        self.assertNotIn(code, (None, 0), node.output())
+        self.assertGreater(code, 0, 'the node died of a signal: ' + node.output())
+        return node.output()
 
     def output_of(self, *arguments):
         """Of one of our examples that ends well."""

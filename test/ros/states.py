@@ -49,13 +49,12 @@ class States(Case):
         rospy.delete_param('/robot_description_semantic')
 
     def setUp(self):
-        self.server.replace()
+        self.server.replace(sphere('ball', 0.2, (2, 1, 0)))
 
     def rows(self, response):
         return {row.kind: row for row in self.succeeded(response).results}
 
     def test_the_robot_as_it_stands_in_the_scene_and_against_itself(self):
-        self.server.replace(sphere('ball', 0.2, (2, 1, 0)))
         rows = self.rows(self.server.distance([], robot_state=True, self_collision=True, joint_state=joints(one=0.0, two=0.0)))
         self.assertEqual((rows['environment'].id, rows['environment'].b, rows['environment'].a), ('state', 'ball', 'lower'))
         self.assertAlmostEqual(rows['environment'].upper, 1 - 0.3, delta=2e-6)
@@ -68,7 +67,6 @@ class States(Case):
         self.assertEqual((rows['self'].verdict, rows['environment'].verdict), ('violated', 'clear'))
 
     def test_a_trajectory_of_one_point_is_the_same_question(self):
-        self.server.replace(sphere('ball', 0.2, (2, 1, 0)))
         for pose in ((0.0, 0.0), (0.7, -0.4)):
             state = self.server.distance([], robot_state=True, self_collision=True, joint_state=joints(one=pose[0], two=pose[1]))
             point = self.server.distance([], trajectory=trajectory(pose), self_collision=True)
@@ -76,7 +74,6 @@ class States(Case):
                 self.assertEqual((a.kind, a.a, a.b, a.lower, a.upper), (b.kind, b.a, b.b, b.lower, b.upper))
 
     def test_the_current_joint_states_are_a_state_too_and_are_watched(self):
-        self.server.replace(sphere('ball', 0.2, (2, 1, 0)))
         self.states.publish(joints(one=0.0, two=0.0))
 
         def upper():  # NaN until the first joint states have come
@@ -112,7 +109,6 @@ class States(Case):
             self.assertRefused(self.server.distance([], trajectory=path, **fields), 'did you mean ' + word)
 
     def test_trajectories_without_times_and_with_repeated_points(self):
-        self.server.replace(sphere('ball', 0.2, (2, 1, 0)))
         rows = ((0.0, 0.0), (0.1, 0.3), (0.4, 0.1))
         timed = self.rows(self.server.distance([], trajectory=trajectory(*rows, times=[0, 1, 2])))['environment']
         untimed = self.rows(self.server.distance([], trajectory=trajectory(*rows)))['environment']
@@ -187,6 +183,7 @@ class States(Case):
 
     def test_the_srdfs_unknown_links_are_told_once_in_the_log_and_in_no_answer(self):
         self.assertEqual(self.node.output().count('ghost'), 1)
+        self.server.replace()
         self.assertEqual(self.rows(self.server.distance([], trajectory=trajectory((0, 0), (0.1, 0), times=[0, 1])))['environment'].message,
                          'nothing was measured: there is no object')
 

@@ -33,7 +33,7 @@ class Topics(Case):
         time.sleep(0.5)
 
     def setUp(self):
-        self.server.replace()
+        self.server.replace(sphere('ball', 0.25))
         self.settled()  # what the gate lets pass of the test before this one may still be on its way
         del self.results[:], self.passed[:]
 
@@ -58,7 +58,6 @@ class Topics(Case):
         return len(self.passed)
 
     def test_a_curve_is_answered_with_its_id_stamp_and_fingerprint(self):
-        self.server.replace(sphere('ball', 0.25))
         curve = bezier(*LINE, id='one', stamp=rospy.Time(12, 34))
         answer = self.succeeded(self.ask('curve', curve))
         self.assertEqual((answer.source, answer.id, answer.header.stamp), ('curve', 'one', rospy.Time(12, 34)))
@@ -69,7 +68,6 @@ class Topics(Case):
         self.assertLessEqual(row.lower, 0.75)
 
     def test_the_gate_lets_pass_what_is_clear_and_nothing_else(self):
-        self.server.replace(sphere('ball', 0.25))
         clear = [bezier(*LINE, id='clear%d' % i) for i in range(5)]
         hits = [bezier((-1, 0, 0.1 * i), (1, 0, 0.1 * i), id='hit%d' % i) for i in range(3)]  # 0.05 and less away
         even = bezier((-1, 0, 0.3), (1, 0, 0.3), id='even')  # just as far away as is asked: within epsilon of either verdict
@@ -83,7 +81,6 @@ class Topics(Case):
 
     def test_a_path_is_the_natural_spline_through_its_poses(self):
         # A ball of path_radius 0.1 along a straight line of poses, one of them twice: the spline is that line.
-        self.server.replace(sphere('ball', 0.25))
         straight = path((-1, 0, 1), (0.5, 0, 1), (0.5, 0, 1), (1, 0, 1))
         row, = self.ask('path', straight).results
         self.assertEqual((row.id, row.verdict), ('path', 'clear'))
@@ -105,13 +102,11 @@ class Topics(Case):
         self.assertEqual(self.settled(), 0)
 
     def test_one_pose_is_a_point(self):
-        self.server.replace(sphere('ball', 0.25))
         self.assertEqual(self.ask('path', path((0, 0, 1))).results[0].verdict, 'clear')
         self.assertEqual(self.ask('path', path((0, 0, 0.3))).results[0].verdict, 'violated')
 
     def test_joint_trajectories_move_the_robot(self):
         # The arm stands 10 m above the ball.
-        self.server.replace(sphere('ball', 0.25))
         answer = self.succeeded(self.ask('trajectory', joint_trajectory(['turn'], [0.0], [1.0])))
         self.assertEqual((answer.results[0].kind, answer.results[0].verdict), ('environment', 'clear'))
         for message, word in ((joint_trajectory(['none'], [0.0], [1.0]), 'none'), (JointTrajectory(), 'no joints')):
@@ -119,7 +114,6 @@ class Topics(Case):
         self.assertEqual(self.settled(), 2)  # a message without points is a stop, which passes
 
     def test_a_flight_of_no_robots_joint_is_its_translation(self):
-        self.server.replace(sphere('ball', 0.25))
         answer = self.succeeded(self.ask('multi_dof_trajectory', free_flight('drone', (-1, 0, 1), (0, 0, 1), (1, 0, 1))))
         self.assertEqual((answer.results[0].id, answer.results[0].verdict), ('drone', 'clear'))
         answer = self.ask('multi_dof_trajectory', free_flight('drone', (-1, 0, 0), (1, 0, 0)))
@@ -129,7 +123,6 @@ class Topics(Case):
         self.assertEqual(self.settled(), 1)
 
     def test_services_answer_what_topics_do(self):
-        self.server.replace(sphere('ball', 0.25))
         asked = dict(curves=bezier(*LINE, id='one'), paths=path((-1, 0, 1), (0, 0, 0.7), (1, 0, 1)),
                      trajectories=joint_trajectory(['turn'], [0.0], [1.0]),
                      multi_dof_trajectories=free_flight('drone', (-1, 0, 1), (0, 0, 0.6), (1, 0, 1)))
@@ -167,6 +160,7 @@ class Topics(Case):
         self.assertGreater(dropped, 0)
 
     def test_objects_come_by_topic(self):
+        self.server.replace()
         self.objects.publish(sphere('ball', 0.25, frame='shelf'))
         self.assertTrue(until(lambda: self.server.scene().objects, 5))
         self.assertEqual(self.server.scene().objects[0].pose.position.z, 2)
@@ -176,6 +170,7 @@ class Topics(Case):
         self.assertTrue(until(lambda: not self.server.scene().objects, 5))
 
     def test_what_a_link_carries_comes_by_topic(self):
+        self.server.replace()
         self.carried.publish(AttachedCollisionObject(link_name='arm', object=sphere('tool', 0.1, frame='arm')))
         held = until(lambda: self.server.scene().attached_collision_objects, 5)
         self.assertEqual([(o.link_name, o.object.id) for o in held], [('arm', 'tool')])

@@ -37,7 +37,7 @@ class WrongParameters(Case):
                  good.replace('<sphere radius="0.1"/>', '<mesh filename="package://curve_proximity/none.stl"/>')]
         for urdf in cases:
             self.set_param('/robot_description', urdf)
-            self.assertIn("arm", self.stopped())
+            self.assertIn("link 'arm'", self.stopped())
         self.set_param('/robot_description', 'no robot')
         self.assertIn('robot_description', self.stopped())
 
