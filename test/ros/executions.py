@@ -128,7 +128,7 @@ class Executions(Case):
     def test_pairs_of_links_are_those_of_the_library(self):
         pairs = self.succeeded(self.server.ask('collision_matrix')).pairs
         expected = self.robot.collision_matrix()
-        self.assertEqual(len(pairs), 3)
+        self.assertEqual((len(pairs), len(expected)), (3, 3))
         for pair, row in zip(pairs, expected):
             self.assertEqual((pair.a, pair.b, pair.contact, pair.adjacent, pair.lower, pair.upper, dict(zip(pair.joints, pair.positions))),
                              (row['a'], row['b'], row['contact'], row['adjacent'], row['lower'], row['upper'], row['posture']))
@@ -144,12 +144,12 @@ class Executions(Case):
     def test_a_budget_ends_answers_about_errors_without_clear(self):
         for response in (self.server.tolerance([], 0.0, trajectory=QUARTER, errors=errors(), budget_ms=1e-6),
                          self.server.distance([], trajectory=QUARTER, errors=errors(), budget_ms=1e-6)):
-            for row in response.results:
-                self.assertNotEqual(row.verdict, 'clear')
+            row, = response.results
+            self.assertNotEqual(row.verdict, 'clear')
         asked = query(trajectory=QUARTER, objects=['ball'], budget_ms=1e-6)
         for name, fields, field in (('margins', {}, 'margins'), ('speed_limits', PERSON, 'limits')):
-            for found in getattr(self.server.ask(name, query=asked, **fields), field):
-                self.assertFalse(any(found.free) if field == 'margins' else any(found.overrides))
+            found, = getattr(self.server.ask(name, query=asked, **fields), field)
+            self.assertFalse(any(found.free) if field == 'margins' else any(found.overrides))
 
     def test_what_does_not_apply_is_said_in_one_line(self):
         line = bezier((-1, 0, 1), (1, 0, 1))
@@ -188,7 +188,8 @@ class Executions(Case):
         self.assertEqual((row.status, row.verdict, row.lower, row.certified_scale), (status, 'undecided', 0.0, 0.0), name)
         margins, = call('margins').margins
         self.assertEqual((margins.summary.status, margins.summary.verdict, set(margins.free)), (status, 'undecided', {0.0}), name)
-        for limits in call('speed_limits', **PERSON).limits if 'objects' in asked else []:  # it asks for names
+        if 'objects' in asked:  # it asks for names
+            limits, = call('speed_limits', **PERSON).limits
             self.assertEqual((limits.profile.summary.status, set(limits.overrides), limits.constant), (status, {0.0}, 0.0), name)
         volume, = call('swept_volume', resolution=0.05).volumes
         self.assertEqual(volume.summary.status, 'ok', name)  # objects do not matter to it

@@ -92,8 +92,9 @@ class Questions(Case):
 
     def test_a_profile_has_the_least_distance_of_each_interval(self):
         for fields, options in ((dict(intervals=8), {}), (dict(breaks=BREAKS), {}), (dict(intervals=8, horizon=0.6), dict(horizon=0.6))):
-            for profile, expected in zip(self.good(self.ask('clearance_profile', LINE, THROUGH, objects=list(BALLS), **fields)),
-                                         self.curves(self.alone.profile, LINE, THROUGH, breaks=BREAKS, **options)):
+            found = self.good(self.ask('clearance_profile', LINE, THROUGH, objects=list(BALLS), **fields))
+            self.assertEqual(len(found), 2)
+            for profile, expected in zip(found, self.curves(self.alone.profile, LINE, THROUGH, breaks=BREAKS, **options)):
                 self.assertProfile(profile, expected)
             profiles = self.good(self.ask('clearance_profile', self_collision=True, per_link=True, **fields))
             profiles += self.good(self.ask('clearance_profile', self_collision=True, **fields))
@@ -109,6 +110,7 @@ class Questions(Case):
             expected = self.curves(self.alone.violations, LINE, THROUGH, **asked)
             found += self.good(self.ask('violations', self_collision=True, **asked))
             expected += [self.motion.violations(self_collision=own, **asked) for own in (False, True)]
+            self.assertEqual(len(found), len(expected))
             for violations, of in zip(found, expected):
                 for name in ('enter_lower', 'enter_upper', 'leave_lower', 'leave_upper', 'verdict', 'upper', 't', 'b'):
                     self.assertEqual(list(getattr(violations, name)), [one[name] for one in of], name)

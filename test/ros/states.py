@@ -70,8 +70,8 @@ class States(Case):
         for pose in ((0.0, 0.0), (0.7, -0.4)):
             state = self.server.distance([], robot_state=True, self_collision=True, joint_state=joints(one=pose[0], two=pose[1]))
             point = self.server.distance([], trajectory=trajectory(pose), self_collision=True)
-            for a, b in zip(state.results, point.results):
-                self.assertEqual((a.kind, a.a, a.b, a.lower, a.upper), (b.kind, b.a, b.b, b.lower, b.upper))
+            rows, others = ([(r.kind, r.a, r.b, r.lower, r.upper) for r in answer.results] for answer in (state, point))
+            self.assertEqual((len(rows), rows), (2, others))
 
     def test_the_current_joint_states_are_a_state_too_and_are_watched(self):
         self.states.publish(joints(one=0.0, two=0.0))
