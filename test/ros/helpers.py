@@ -530,7 +530,7 @@ def connected(*ends, seconds=20):
 
 def _is_connected(end):
     if isinstance(end, rospy.Publisher):
-        end.impl.check()  # it counts those of a node that has died for seconds
+        end.impl.check()  # for those that were closed; rospy itself looks every half second
         return end.get_num_connections() > 0
     master = rosgraph.Master(rospy.get_name())
     publishers = set(dict(master.getSystemState()[0]).get(end.resolved_name, [])) - {rospy.get_name()}

@@ -163,6 +163,7 @@ class Histories(Case):
             self.assertTrue(until(lambda: written(kept), 5))
         self.node.process.send_signal(signal.SIGKILL)
         self.node.wait(5)
+        self.assertTrue(until(lambda: not connected(self.topics['collision_object'], seconds=0), 0.1), 'a message to it would be lost')
         last = rospy.get_param('/%s/last_scene' % NAME, None)
         self.world.seen, self.world.told, self.sensing, self.telling = False, False, None, None
         self.node.end()
@@ -224,7 +225,7 @@ class Histories(Case):
         return called
 
     def test_nothing_is_clear_that_is_not_or_is_not_known(self):
-        first, n, clear = rospy.get_param('~seed', 0), rospy.get_param('~histories', 3), 0
+        first, n, clear, played = rospy.get_param('~seed', 0), rospy.get_param('~histories', 3), 0, 0
         for seed in range(first, first + n):
             with self.subTest(seed=seed):
                 if seed > first:
@@ -233,7 +234,8 @@ class Histories(Case):
                     self.files()
                     self.start()
                 clear += self.play(seed)
-        self.assertGreater(clear, 20 * n)  # it is not silent
+                played += 1
+        self.assertTrue(clear > 20 * played or not played, clear)  # it is not silent; of a history that failed its own failure is told
 
 
 if __name__ == '__main__':
