@@ -28,7 +28,7 @@ struct SweepOptions {
   bool inside = false;                             /**< find the cells inside, too: several times the work */
   std::vector<std::string> links;                  /**< these links and what they carry; empty: all of the motion's */
   unsigned threads = 0;                            /**< 0: as many as the machine has */
-  std::size_t memory_limit = std::size_t{1} << 30; /**< bytes for the cells of the box round the motion */
+  std::size_t memory_limit = std::size_t{1} << 30; /**< bytes: cells of the box round the motion, bodies at poses */
   bool (*stop)(void *) = nullptr; /**< polled by all threads; true ends the work with Error, status CPROX_STOPPED */
   void *stop_user = nullptr;      /**< its argument */
 };

@@ -120,6 +120,25 @@ CASE(a_sweep_that_cannot_be_is_refused) {
   robot_free(&t);
 }
 
+static bool ends(void *asked) {
+  return ++*(int *)asked > 3;
+}
+
+CASE(a_sweep_ends_when_its_workspace_wants_an_end) {
+  rng r = rng_seed(4604);
+  test_robot t;
+  robot_make(&r, 0.5, &t);
+  size_t n = 7;
+  int asked = 0;
+  cprox_workspace_set_stop(ws, ends, &asked);
+  assert_int_equal(cprox_motion_sweep(t.motion, (int32_t)t.n_links - 1, 1e-8, ws, 0, NULL, &n), CPROX_INVALID);
+  cprox_workspace_set_stop(ws, NULL, NULL);
+  assert_non_null(strstr(cprox_workspace_error(ws), "stopped"));
+  assert_int_equal(asked, 4);
+  assert_int_equal(n, 7);
+  robot_free(&t);
+}
+
 int main(void) {
   return cases_run(workspace_setup, workspace_teardown);
 }

@@ -121,6 +121,7 @@ class Budgets(Case):
             subject = query([], motion(points))
             self.each('a trajectory of %d points' % points, subject, None if points == 20000 else ['distance', 'violations'])
             self.asks('profile per link of %d points' % points, 'clearance_profile', query=subject, intervals=100, per_link=True)
+            self.asks('swept volume of %d points' % points, 'swept_volume', query=subject, resolution=0.001)
             subject.gradient = True
             self.asks('gradient of %d points' % points, 'distance', query=subject)
         self.each('2000 trajectories of 2 points', query([], trajectories=[motion(2, turns=0.001 * i + 1) for i in range(2000)],

@@ -359,8 +359,8 @@ typedef struct cprox_swept_pose {
  *  room, poses   receives the first `room` intervals, in the order of time; may be 0 and NULL
  *  n             receives how many there are
  *
- *  Returns CPROX_OK; CPROX_PRECISION: no interval is short enough; CPROX_INVALID and CPROX_MEMORY as elsewhere. The
- *  cost is that of a few forward kinematics an interval. Source: doc/swept-volume.md */
+ *  Returns CPROX_OK; CPROX_PRECISION: no interval is short enough; CPROX_INVALID, also by cprox_workspace_set_stop();
+ *  CPROX_MEMORY. The cost is that of a few forward kinematics an interval. Source: doc/swept-volume.md */
 CPROX_API cprox_status cprox_motion_sweep(const cprox_motion *motion, int32_t geometry, double displacement,
                                           cprox_workspace *workspace, size_t room, cprox_swept_pose *poses, size_t *n);
 

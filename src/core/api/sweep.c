@@ -9,6 +9,8 @@
 #include "kinematics/bound.h"
 #include "problem/validate.h"
 
+enum { NODES_BETWEEN_LOOKS = 64 };
+
 typedef struct sweep {
   const cprox_motion *motion;
   int32_t geometry;
@@ -17,6 +19,8 @@ typedef struct sweep {
   double *rows;
   cprox_swept_pose *poses;
   size_t room, n;
+  cprox_workspace *workspace;
+  size_t nodes;
 } sweep;
 
 /* How far a point of the geometry can be from where the middle of the node at hand has it. */
@@ -55,8 +59,9 @@ static void keep(sweep *s, size_t segment, double a, double b, double displaceme
   s->n++;
 }
 
-/* False where no interval is short enough. */
+/* False where no interval is short enough, or an end is wanted. */
 static bool cut(sweep *s, size_t segment, double a, double b) {
+  if (s->nodes++ % NODES_BETWEEN_LOOKS == 0 && workspace_stops(s->workspace)) return false;
   motion_node(s->motion, segment, a, b, s->rows, s->axes);
   const double displacement = displacement_of(s);
   if (displacement <= s->most) {
@@ -82,16 +87,23 @@ cprox_status cprox_motion_sweep(const cprox_motion *motion, int32_t geometry, do
   if (!(displacement > 0.0 && displacement <= LENGTH_MOST))
     return workspace_fail(workspace, CPROX_INVALID, "displacement is %g, must be above 0 and at most %g", displacement,
                           LENGTH_MOST);
-  sweep s = {.motion = motion, .geometry = geometry, .most = displacement, .poses = poses, .room = room};
+  sweep s = {.motion = motion,
+             .geometry = geometry,
+             .most = displacement,
+             .poses = poses,
+             .room = room,
+             .workspace = workspace};
   const size_t rows = MOTION_ROWS * motion->row_size * sizeof *s.rows;
   char *memory = workspace_reserve(workspace, WORKSPACE_SWEEP, motion->robot->n_axes * sizeof *s.axes + rows + 64);
   if (!memory) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a motion's intervals");
   s.rows = (double *)(void *)memory;
   s.axes = (axis_state *)(void *)(memory + rows);
-  for (size_t i = 0; i < motion->n_segments; i++)
-    if (!cut(&s, i, 0.0, 1.0))
-      return workspace_fail(workspace, CPROX_PRECISION, "no interval moves geometry %d by less than %g m",
-                            (int)geometry, displacement);
+  for (size_t i = 0; i < motion->n_segments; i++) {
+    if (cut(&s, i, 0.0, 1.0)) continue;
+    if (workspace_has_stopped(workspace)) return workspace_fail(workspace, CPROX_INVALID, "stopped");
+    return workspace_fail(workspace, CPROX_PRECISION, "no interval moves geometry %d by less than %g m", (int)geometry,
+                          displacement);
+  }
   *n = s.n;
   return CPROX_OK;
 }

@@ -73,21 +73,35 @@ bool parts(const Plane &plane, const SweptBody &body, const Eigen::Vector3d &cen
   return cube - all > ROUNDING * sizes;
 }
 
-std::vector<SweptBody> bodiesAlong(const RobotMotion::Data &data, const std::vector<std::string> &links,
-                                   double displacement, Workspace &workspace) {
+void demandTime(const SweepOptions &options) {
+  if (options.stop && options.stop(options.stop_user)) throw Error("stopped", CPROX_STOPPED);
+}
+
+/* room: [bytes] for them. */
+std::vector<SweptBody> bodiesAlong(const RobotMotion::Data &data, const SweepOptions &options, double displacement,
+                                   double room, Workspace &workspace) {
   std::vector<SweptBody> out;
   const Kinematics &kinematics = *data.kinematics;
   for (std::size_t i = 0; i < kinematics.geometries.size(); ++i) {
     const MovingGeometry &geometry = kinematics.geometries[i];
     if (!data.wanted[i] || geometry.within) continue;
+    const std::vector<std::string> &links = options.links;
     if (!links.empty() && std::find(links.begin(), links.end(), *geometry.link) == links.end()) continue;
     std::vector<cprox_swept_pose> poses;
-    for (std::size_t n = 0, room = 64;; room = n) {
-      poses.resize(room);
+    for (std::size_t n = 0, most = 64;; most = n) {
+      poses.resize(most);
       const cprox_status status = cprox_motion_sweep(data.core.get(), static_cast<std::int32_t>(i), displacement,
-                                                     workspace.get(), room, poses.data(), &n);
+                                                     workspace.get(), most, poses.data(), &n);
+      demandTime(options);
       if (status != CPROX_OK) throw Error(workspace.reason(), status);
-      if (n > room) continue;
+      const double bytes =
+          2.0 * static_cast<double>(out.size() + n) * sizeof(SweptBody); // a list that grows is there twice
+      if (bytes > room)
+        throw Error("a resolution of " + std::to_string(options.resolution) + " m takes more than " +
+                        std::to_string(out.size() + n) + " bodies at poses, " + std::to_string(bytes / 1e9) +
+                        " GB, the limit is " + std::to_string(static_cast<double>(options.memory_limit) / 1e9) + " GB",
+                    CPROX_MEMORY);
+      if (n > most) continue;
       poses.resize(n);
       break;
     }
@@ -282,6 +296,7 @@ SweptVolume sweptVolume(const RobotMotion &motion, const SweepOptions &options) 
   if (!(r > 0.0 && std::isfinite(r)))
     throw Error("the resolution is " + std::to_string(r) + ", must be above 0 (metres)");
   Workspace workspace;
+  cprox_workspace_set_stop(workspace.get(), options.stop, options.stop_user);
   SweptVolume out;
   out.resolution = r;
   const double displacement = 0.5 * r;
@@ -293,7 +308,8 @@ SweptVolume sweptVolume(const RobotMotion &motion, const SweepOptions &options) 
   /* the blocks that the bodies may reach, by few poses: all memory is known before the work begins */
   constexpr double ROUGH = 0.01;
   Eigen::Vector3d low = Eigen::Vector3d::Constant(INFINITY), high = -low;
-  for (const SweptBody &body : bodiesAlong(motion.data(), options.links, std::max(displacement, ROUGH), workspace)) {
+  const auto limit = static_cast<double>(options.memory_limit);
+  for (const SweptBody &body : bodiesAlong(motion.data(), options, std::max(displacement, ROUGH), limit, workspace)) {
     low = low.cwiseMin((body.centre.array() - body.radius).matrix());
     high = high.cwiseMax((body.centre.array() + body.radius).matrix());
   }
@@ -308,12 +324,13 @@ SweptVolume sweptVolume(const RobotMotion &motion, const SweepOptions &options) 
     first[i] = static_cast<std::int32_t>(from), n[i] = static_cast<std::int32_t>(to - from);
   }
   constexpr double BYTES = 16.0; /* of a cell in the lists */
-  if (!(cells * BYTES <= static_cast<double>(options.memory_limit)))
+  if (!(cells * BYTES <= limit))
     throw Error("a resolution of " + std::to_string(r) + " m takes up to " + std::to_string(cells * BYTES / 1e9) +
-                    " GB, the limit is " + std::to_string(static_cast<double>(options.memory_limit) / 1e9) + " GB",
+                    " GB, the limit is " + std::to_string(limit / 1e9) + " GB",
                 CPROX_MEMORY);
 
-  const std::vector<SweptBody> bodies = bodiesAlong(motion.data(), options.links, displacement, workspace);
+  const std::vector<SweptBody> bodies =
+      bodiesAlong(motion.data(), options, displacement, limit - cells * BYTES, workspace);
   out.n_poses = bodies.size();
   std::vector<BodyHandle> boxes;
   for (int level = 0; level <= LEVELS; ++level) boxes.push_back(makeBox(Eigen::Vector3d::Constant(r * (1 << level))));
@@ -330,7 +347,7 @@ SweptVolume sweptVolume(const RobotMotion &motion, const SweepOptions &options) 
                            SIDE * (first[2] + at % n[2])};
       Block block(corner, options, boxes);
       for (const SweptBody &body : bodies) {
-        if (options.stop && options.stop(options.stop_user)) throw Error("stopped", CPROX_STOPPED);
+        demandTime(options);
         if (!block.isFull()) block.draw(body, own);
       }
       const std::lock_guard<std::mutex> lock(mutex);
