@@ -291,6 +291,10 @@ class Scene {
    * objects, whose bodies are made before other changes have to wait. */
   std::vector<std::string> apply(const SceneChange &change);
 
+  /** The same. on_applied: called with the new snapshot's version just before snapshot() returns it, unless there are
+   *  errors. Other changes wait for it. */
+  std::vector<std::string> apply(const SceneChange &change, const std::function<void(std::uint64_t)> &on_applied);
+
  private:
   const ResourceOptions resources_;
   const std::shared_ptr<const std::vector<AllowedPair>> first_allowed_;

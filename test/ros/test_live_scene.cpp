@@ -15,13 +15,13 @@ namespace {
 
 const std::string CLOUD = "cloud";
 
-SceneChange cloud() {
+SceneChange cloud(int count = 50) {
   Operation operation;
   operation.object.id = CLOUD;
   ShapeDescription points;
   points.type = ShapeType::POINTS;
   points.dimensions = {0.01};
-  points.vertices = Eigen::Matrix3Xd::Random(3, 50);
+  points.vertices = Eigen::Matrix3Xd::Random(3, count);
   operation.object.shapes = {points};
   SceneChange out;
   out.operations = {operation};
@@ -76,6 +76,34 @@ TEST(LiveScene, a_cloud_that_a_clear_takes_away_is_unknown_at_once) {
   SceneChange clear;
   clear.clear = true;
   stress(clear);
+}
+
+/* Two clouds by turns, of other points and of another age: what is read shows both of the same message. */
+TEST(LiveScene, a_cloud_is_as_old_as_the_message_that_shows_it) {
+  ros::Time::init();
+  LiveScene live(nullptr, Srdf(), ResourceOptions());
+  const ros::Time now = ros::Time::now();
+  const auto show_one = [&](int i) { // the odd ones are older and of two points
+    live.applySeen(cloud(1 + i % 2), CLOUD, now - ros::Duration(i % 2 ? 3000 : 1000));
+  };
+  show_one(0);
+  std::atomic<bool> done{false};
+  std::atomic<int> mixed{0}, odd{0}, even{0};
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 3; ++i) {
+    threads.emplace_back([&] {
+      while (!done) {
+        const LiveScene::Seen seen = live.seen();
+        const bool is_odd = seen.snapshot->objects().at(CLOUD)->description.shapes.front().vertices.cols() == 2;
+        mixed += is_odd != (seen.sensors.front().age > 2000);
+        ++(is_odd ? odd : even);
+      }
+    });
+  }
+  for (int i = 0; i < 20000 || odd == 0 || even == 0; ++i) show_one(i);
+  done = true;
+  for (std::thread &thread : threads) thread.join();
+  EXPECT_EQ(mixed, 0);
 }
 
 /* A whole scene of move_group keeps the objects of those sensors that were known when it was made. */

@@ -48,17 +48,17 @@ SceneState LiveScene::state() const {
   return state(*now.snapshot, std::move(now.sensors));
 }
 
-/* What is unknown, and how old sensors' objects are, is looked at before the scene: an object may be newer than what is
- * said of it, and not older. But where the scene was emptied in between, an object of a sensor that is known is gone. */
+/* What is unknown is looked at before the scene: an object may be newer than what is said of it, and not older. Where
+ * nothing of the sensors changes meanwhile, their states and the scene are of one moment. */
 LiveScene::Seen LiveScene::seen() const {
   constexpr int MOST = 100;
   Seen out;
   for (int i = 0; i < MOST; ++i) {
-    const std::uint64_t emptied = sensors.emptied();
+    const std::uint64_t changes = sensors.changes();
     out.unknowns = unknowns.all();
-    out.sensors = sensors.states();
     out.snapshot = scene.snapshot();
-    if (sensors.emptied() == emptied) return out;
+    out.sensors = sensors.states(out.snapshot->version());
+    if (sensors.changes() == changes) return out;
   }
   for (SensorState &sensor : out.sensors) sensor.unknown = true;
   return out;
@@ -101,8 +101,8 @@ std::vector<std::string> LiveScene::apply(const SceneChange &change, const Snaps
 
 void LiveScene::applySeen(const SceneChange &change, const std::string &id, const ros::Time &stamp) {
   const std::uint64_t emptied = sensors.emptied();
-  for (const std::string &error : scene.apply(change)) throw Error(error);
-  sensors.saw(id, stamp, emptied);
+  const auto note = [&](std::uint64_t version) { sensors.saw(id, stamp, emptied, version); };
+  for (const std::string &error : scene.apply(change, note)) throw Error(error);
 }
 
 void LiveScene::refuse(const std::string &topic, const std::string &id, const std::string &about,

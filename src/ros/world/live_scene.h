@@ -34,7 +34,7 @@ struct LiveScene {
   ros::Time epoch; /**< when the server started */
   Unknowns unknowns;
 
-  /** What is known at one moment: no change that empties the scene comes between its parts. */
+  /** What is known at one moment. The states of sensors are those of the snapshot's objects. */
   struct Seen {
     std::vector<Unknown> unknowns;
     std::vector<SensorState> sensors;
@@ -58,8 +58,8 @@ struct LiveScene {
   /** The pairs of links that are not checked against each other, beside the allowed pairs of the snapshot. */
   const std::vector<std::array<std::string, 2>> &disabled(const Snapshot &snapshot) const;
 
-  /** The scene of a snapshot, with sensors as they were before it was taken; what was measured and the ages of joints
-   * and transforms are left open. */
+  /** The scene of a snapshot, with sensors as they were when it was taken; what was measured and the ages of joints and
+   *  transforms are left open. */
   SceneState state(const Snapshot &snapshot, std::vector<SensorState> seen) const;
   SceneState state() const; /**< of the latest snapshot */
 

@@ -24,25 +24,29 @@ namespace curve_proximity {
 /** Any number of threads. */
 class SensorBoard {
  public:
-  /** The object is as a message of this stamp shows it. emptied_before: emptied() before it was put into the scene.
-   *  Where it is another number now, the object may have gone again, and is unknown. */
-  void saw(const std::string &id, const ros::Time &stamp, std::uint64_t emptied_before) {
-    change(id, [&](Sensor &sensor) { sensor = {Age(stamp), emptied_before != emptied_}; });
+  /** From this version of the scene on the object is as a message of this stamp shows it. emptied_before: emptied()
+   *  before it was put into the scene. Where it is another number now, the object may have gone again, and is unknown. */
+  void saw(const std::string &id, const ros::Time &stamp, std::uint64_t emptied_before, std::uint64_t version = 0) {
+    change(id, [&](Sensor &sensor) {
+      sensor.before = sensor.now;
+      sensor.now = {Age(stamp), emptied_before != emptied_};
+      sensor.since = version;
+    });
   }
 
   /** A message of this stamp had no valid point. */
   void sawNothing(const std::string &id, const ros::Time &stamp) {
-    change(id, [&](Sensor &sensor) { sensor = {Age(stamp), true}; });
+    change(id, [&](Sensor &sensor) { sensor.now = {Age(stamp), true}; });
   }
 
   /** A message came that cannot be used: the object is as old as before, and what is there now is not known. */
   void refused(const std::string &id) {
-    change(id, [](Sensor &sensor) { sensor.unknown = true; });
+    change(id, [](Sensor &sensor) { sensor.now.unknown = true; });
   }
 
   /** A sensor is expected to show the object; no message has come since the server started. */
   void awaits(const std::string &id) {
-    change(id, [](Sensor &sensor) { sensor = {std::nullopt, true}; });
+    change(id, [](Sensor &sensor) { sensor.now = {std::nullopt, true}; });
   }
 
   /** While this lives a change empties the scene, but for some objects. From then on nothing is known of what sensors
@@ -52,13 +56,15 @@ class SensorBoard {
     Emptying(SensorBoard &board, std::vector<std::string> kept) : board_(board), kept_(std::move(kept)) {
       const std::lock_guard<std::mutex> lock(board_.mutex_);
       ++board_.emptied_;
+      ++board_.changes_;
       board_.emptyings_.push_back(this);
     }
     ~Emptying() {
       const std::lock_guard<std::mutex> lock(board_.mutex_);
       ++board_.emptied_;
-      for (auto &sensor : board_.sensors_)
-        if (!keeps(sensor.first)) sensor.second.unknown = true;
+      ++board_.changes_;
+      for (auto &[id, sensor] : board_.sensors_)
+        if (!keeps(id)) sensor.before.unknown = sensor.now.unknown = true;
       board_.emptyings_.remove(this);
     }
     Emptying(const Emptying &) = delete;
@@ -79,19 +85,28 @@ class SensorBoard {
     return emptied_;
   }
 
+  /** How often anything of this has changed. */
+  std::uint64_t changes() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return changes_;
+  }
+
   /** The object is no sensor's any more: somebody has set or removed it. */
   void forget(const std::string &id) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    sensors_.erase(id);
+    changes_ += sensors_.erase(id);
   }
 
   /** Told of each object that was not there; set before the first message. */
   std::function<void()> appeared;
 
-  std::vector<SensorState> states() const {
+  /** version: of the scene that they are about, at most one message before the latest. */
+  std::vector<SensorState> states(std::uint64_t version = std::numeric_limits<std::uint64_t>::max()) const {
     const std::lock_guard<std::mutex> lock(mutex_);
     std::vector<SensorState> out;
-    for (const auto &[id, sensor] : sensors_) {
+    for (const auto &[id, of] : sensors_) {
+      const Sight &sensor = of.since <= version ? of.now : of.before;
+      if (!sensor.age && !sensor.unknown) continue; // it was no sensor's yet
       SensorState state;
       state.id = id;
       state.age = sensor.age ? sensor.age->seconds() : std::numeric_limits<double>::infinity();
@@ -103,9 +118,13 @@ class SensorBoard {
   }
 
  private:
-  struct Sensor {
+  struct Sight {
     std::optional<Age> age;
     bool unknown = false;
+  };
+  struct Sensor {
+    Sight now, before;       /* before: in versions of the scene before `since` */
+    std::uint64_t since = 0; /* the version that has the object as it is now */
   };
 
   template <class Work>
@@ -113,6 +132,7 @@ class SensorBoard {
     bool is_new = false;
     {
       const std::lock_guard<std::mutex> lock(mutex_);
+      ++changes_;
       is_new = sensors_.count(id) == 0;
       work(sensors_[id]);
     }
@@ -122,7 +142,7 @@ class SensorBoard {
   mutable std::mutex mutex_;
   std::map<std::string, Sensor> sensors_;
   std::list<const Emptying *> emptyings_; /* under way */
-  std::uint64_t emptied_ = 0;
+  std::uint64_t emptied_ = 0, changes_ = 0;
 };
 
 } // namespace curve_proximity

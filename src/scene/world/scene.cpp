@@ -369,6 +369,10 @@ SnapshotPtr Scene::snapshot() const {
 }
 
 std::vector<std::string> Scene::apply(const SceneChange &change) {
+  return apply(change, nullptr);
+}
+
+std::vector<std::string> Scene::apply(const SceneChange &change, const std::function<void(std::uint64_t)> &on_applied) {
   // What takes long, the bodies, before anybody has to wait for it.
   std::vector<Prepared> prepared;
   prepared.reserve(change.operations.size());
@@ -443,6 +447,7 @@ std::vector<std::string> Scene::apply(const SceneChange &change) {
 
   // Made in full before it becomes visible.
   next->world_ = std::make_shared<const World>(next->objects_, &before->world());
+  if (on_applied && faults.empty()) on_applied(next->version_);
   const std::lock_guard<std::mutex> lock(current_);
   snapshot_ = next;
   return faults;
