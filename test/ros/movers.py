@@ -78,6 +78,16 @@ class Movers(Case):
         shown = drawings.shown(lambda s: [m.type for m in s['movers']] == [Marker.CUBE], 'movers', 'movers_way', 'pairs')
         self.assertAlmostEqual(shown['movers'][0].pose.position.z, 3 - 2.5 * row.t, delta=1e-6)
 
+    def test_the_robot_and_what_moves_beside_it_are_shown_at_one_moment(self):
+        """At the first one: of hulls no distance is measured."""
+        self.server.replace(self.fall())
+        drawings = Drawings()
+        row = self.row(self.server.distance([], trajectory=swing(-0.8, 0.8)))
+        self.assertTrue(row.upper == math.inf and row.t > 0.0, (row.upper, row.t))
+        shown = drawings.shown(lambda s: True, 'movers', 'robot')
+        self.assertAlmostEqual(shown['movers'][0].pose.position.z, 3, delta=1e-6)
+        self.assertLess(min(abs(m.pose.orientation.z - math.sin(-0.4)) for m in shown['robot']), 1e-6)
+
     def test_the_scene_keeps_what_moves(self):
         state = self.server.replace(self.fall(start=rospy.Time(1234, 567), turning='screw')).scene
         self.assertEqual(state.objects, 1)

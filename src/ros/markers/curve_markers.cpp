@@ -71,10 +71,18 @@ void addCurve(Canvas &canvas, const CompiledCurve &curve, const StandingBodies &
 
 /* ---- pairs ---- */
 
+const Answer *nearestOf(const std::vector<Answer> &answers) {
+  const Answer *nearest = nullptr;
+  for (const Answer &answer : answers) {
+    const bool measured = answer.result.status >= 0 && !answer.b.empty() && std::isfinite(answer.result.upper);
+    if (measured && (!nearest || answer.result.upper < nearest->result.upper)) nearest = &answer;
+  }
+  return nearest;
+}
+
 void addPair(Canvas &canvas, const Answer &answer) {
   const cprox_result &result = answer.result;
   const bool apart = result.upper > 0.0 || result.lower > 0.0;
-  if (result.status < 0 || answer.b.empty() || !std::isfinite(result.upper)) return;
   const std_msgs::ColorRGBA tint = apart ? colour(0.12, 0.12, 0.14, 1.0) : clearanceColour(0.0);
   canvas.add("pairs", Marker::LINE_LIST, {CURVE_WIDTH, 0.0, 0.0}, tint).points = {
       toPointMessage(result.witness_mover), toPointMessage(result.witness_obstacle)};

@@ -30,7 +30,10 @@ void addObstacleCurve(Canvas &canvas, const Geometry &geometry, const Eigen::Iso
 
 void addCurve(Canvas &canvas, const CompiledCurve &curve, const StandingBodies &placed, std::size_t samples);
 
-/** The two points with a line between them, and the distance in words. Nothing where there is no pair. */
+/** The nearest of those that have measured a pair; null where none has. */
+const Answer *nearestOf(const std::vector<Answer> &answers);
+
+/** The two points of an answer that has a pair, with a line between them, and the distance in words. */
 void addPair(Canvas &canvas, const Answer &answer);
 
 } // namespace curve_proximity

@@ -49,11 +49,8 @@ void addCurves(Canvas &canvas, const Snapshot &scene, const Drawing &drawing, co
   const std::size_t samples = std::clamp<std::size_t>(MAX_SAMPLES / drawing.lines.size(), 2, MAX_CURVE_SAMPLES);
   for (const Drawing::Line &line : drawing.lines) {
     addCurve(canvas, line.curve, placed, samples);
-    const auto nearest =
-        std::min_element(line.answers.begin(), line.answers.end(),
-                         [](const Answer &a, const Answer &b) { return a.result.upper < b.result.upper; });
-    const bool still_true = drawing.snapshot->version() == scene.version();
-    if (still_true && nearest != line.answers.end()) addPair(canvas, *nearest);
+    const Answer *nearest = nearestOf(line.answers);
+    if (nearest && drawing.snapshot->version() == scene.version()) addPair(canvas, *nearest);
   }
 }
 

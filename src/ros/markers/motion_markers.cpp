@@ -2,7 +2,6 @@
 #include "markers/motion_markers.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace curve_proximity {
@@ -55,16 +54,6 @@ void addLink(Canvas &canvas, const std::string &space, const Parts &parts, const
     const LinkGeometry &element = *part.element;
     canvas.addShape(space, element.description, element.geometry.hull, resources, link * element.pose, tint);
   }
-}
-
-/** The nearest of the answers; null where none has a pair. */
-const Answer *nearestOf(const std::vector<Answer> &answers) {
-  const Answer *nearest = nullptr;
-  for (const Answer &answer : answers) {
-    const bool measured = answer.result.status >= 0 && !answer.b.empty() && std::isfinite(answer.result.upper);
-    if (measured && (!nearest || answer.result.upper < nearest->result.upper)) nearest = &answer;
-  }
-  return nearest;
 }
 
 /** The way of a point that is fixed to a link, coloured by the link's clearance. */

@@ -60,40 +60,26 @@ void addRobotAt(Canvas &canvas, const MovingRobot &robot, double t, const Resour
   }
 }
 
-/** When the nearest of the answers is. */
-double closestTime(const Drawing &drawing) {
-  const Answer *nearest = nullptr;
-  for (const Answer &answer : drawing.motion.answers) {
-    const bool measured = answer.result.status >= 0 && !answer.b.empty() && answer.kind != "self";
-    if (measured && (!nearest || answer.result.upper < nearest->result.upper)) nearest = &answer;
-  }
-  return nearest ? nearest->result.t : drawing.motion.movers->domain()[0];
-}
-
 } // namespace
 
 void addMovers(Canvas &canvas, const Snapshot &scene, const Drawing *drawing, const ResourceOptions &objects,
                const ResourceOptions &robots) {
-  const bool asked = drawing && drawing->motion.movers && drawing->snapshot->version() == scene.version();
-  const auto addMoving = [&](const DrawnObject &object) {
-    const Movers &movers = *drawing->motion.movers;
-    const Eigen::Isometry3d pose = movers.objectPose(object.description.id, closestTime(*drawing));
-    addObject(canvas, "movers", object, pose, objects, OBJECT);
-    addWay(canvas, object, movers, objects);
-  };
-  for (const auto &entry : scene.moving()) {
-    const DrawnObject object(*entry.second);
-    if (asked)
-      addMoving(object);
-    else
-      addObject(canvas, "movers", object, entry.second->trajectory.poses.front().pose, objects, OBJECT);
+  if (!drawing || !drawing->motion.movers || drawing->snapshot->version() != scene.version()) {
+    for (const auto &[id, object] : scene.moving())
+      addObject(canvas, "movers", DrawnObject(*object), object->trajectory.poses.front().pose, objects, OBJECT);
+    return;
   }
-  if (!asked) return;
   const Drawing::Motion &motion = drawing->motion;
+  const Answer *nearest = nearestOf(motion.answers);
+  const double t = nearest ? nearest->result.t : motion.movers->domain()[0];
+  const auto addMoving = [&](const DrawnObject &object) {
+    addObject(canvas, "movers", object, motion.movers->objectPose(object.description.id, t), objects, OBJECT);
+    addWay(canvas, object, *motion.movers, objects);
+  };
+  for (const auto &[id, object] : scene.moving()) addMoving(DrawnObject(*object));
   if (motion.rider) addMoving(DrawnObject(*motion.rider, objects));
-  for (const MovingRobot &robot : motion.others) addRobotAt(canvas, robot, closestTime(*drawing), robots);
-  if (motion.robot || motion.answers.empty()) return; // the robot's own picture has the pair
-  addPair(canvas, motion.answers.front());
+  for (const MovingRobot &robot : motion.others) addRobotAt(canvas, robot, t, robots);
+  if (nearest && !motion.robot) addPair(canvas, *nearest); // the robot's own picture has the pair
 }
 
 } // namespace curve_proximity
