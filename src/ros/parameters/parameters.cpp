@@ -7,7 +7,6 @@
 #include <curve_proximity/query.hpp>
 #include <set>
 #include <sstream>
-#include <vector>
 
 #include "../../scene/yaml/bad_input.h"
 #include "../../scene/yaml/path_yaml.h"
@@ -17,6 +16,10 @@ namespace {
 
 /** Below this a process with a few threads does not even start. */
 constexpr int LEAST_MEMORY_MB = 256;
+
+[[noreturn]] void wrong(const std::string &name, const std::string &what) {
+  throw ParameterError("parameter ~" + name + ": " + what);
+}
 
 /* ---- ~constraint_providers ---- */
 
@@ -152,7 +155,7 @@ class NodeParameters {
       try {
         value.push_back(toProviderSpec(given[i]));
       } catch (const Error &error) {
-        throw ParameterError("parameter ~" + std::string(name) + "[" + std::to_string(i) + "]: " + error.what());
+        wrong(name + ("[" + std::to_string(i) + "]"), error.what());
       }
     }
   }
@@ -220,13 +223,8 @@ class NodeParameters {
     return true;
   }
 
-  [[noreturn]] void wrong(const char *name, const std::string &what) const {
-    throw ParameterError("parameter ~" + std::string(name) + ": " + what);
-  }
-
   void check(const char *name, double value, const Range &range) const {
-    const bool enough = range.open ? value > range.least : value >= range.least;
-    if (enough && value <= range.most && std::isfinite(value)) return;
+    if (range.holds(value)) return;
     std::ostringstream what;
     what << value << " is not " << (range.open ? "above " : "at least ") << range.least;
     if (std::isfinite(range.most)) what << " and at most " << range.most;
@@ -249,26 +247,22 @@ Parameters readParameters(const ros::NodeHandle &handle) {
 
   // What a type and a range cannot say.
   if (parameters.memory_limit_mb > 0 && parameters.memory_limit_mb < LEAST_MEMORY_MB)
-    throw ParameterError("parameter ~memory_limit_mb: 0 or at least " + std::to_string(LEAST_MEMORY_MB) +
-                         " is expected");
+    wrong("memory_limit_mb", "0 or at least " + std::to_string(LEAST_MEMORY_MB) + " is expected");
   if (parameters.query_type != "distance" && parameters.query_type != "tolerance" &&
       parameters.query_type != "collision")
-    throw ParameterError("parameter ~query_type: distance, tolerance or collision is expected, not '" +
-                         parameters.query_type + "'");
-  if (parameters.fixed_frame.empty()) throw ParameterError("parameter ~fixed_frame: the name of a frame is expected");
-  if (!lodFromName(parameters.max_lod)) throw ParameterError("parameter ~max_lod: sphere, hull or mesh is expected");
+    wrong("query_type", "distance, tolerance or collision is expected, not '" + parameters.query_type + "'");
+  if (parameters.fixed_frame.empty()) wrong("fixed_frame", "the name of a frame is expected");
+  if (!lodFromName(parameters.max_lod)) wrong("max_lod", "sphere, hull or mesh is expected");
   if (!parameters.second_opinion.empty() && !peerFromName(parameters.second_opinion))
-    throw ParameterError("parameter ~second_opinion: fcl, libccd or nothing is expected, not '" +
-                         parameters.second_opinion + "'");
-  if (parameters.cloud_id.empty()) throw ParameterError("parameter ~cloud_id: the name of an object is expected");
+    wrong("second_opinion", "fcl, libccd or nothing is expected, not '" + parameters.second_opinion + "'");
+  if (parameters.cloud_id.empty()) wrong("cloud_id", "the name of an object is expected");
   if (parameters.octomap_id.empty() || parameters.octomap_id == parameters.cloud_id)
-    throw ParameterError("parameter ~octomap_id: the name of an object is expected, another than ~cloud_id");
+    wrong("octomap_id", "the name of an object is expected, another than ~cloud_id");
   for (const std::string &id : parameters.expected_sensors)
     if (id != parameters.cloud_id && id != parameters.octomap_id)
-      throw ParameterError("parameter ~expected_sensors: '" + id + "' is neither ~cloud_id nor ~octomap_id");
+      wrong("expected_sensors", "'" + id + "' is neither ~cloud_id nor ~octomap_id");
   if (parameters.robot_description.find('<') != std::string::npos)
-    throw ParameterError(
-        "parameter ~robot_description: the name of the parameter that holds the URDF is expected, not the URDF itself");
+    wrong("robot_description", "the name of the parameter that holds the URDF is expected, not the URDF itself");
   return parameters;
 }
 
@@ -278,7 +272,7 @@ GateParameters readGateParameters(const ros::NodeHandle &handle) {
   visitGateParameters(parameters, reader);
   reader.keep(READING_OF_GATE);
   reader.warnOfOthers();
-  if (parameters.server.empty()) throw ParameterError("parameter ~server: the namespace of a server is expected");
+  if (parameters.server.empty()) wrong("server", "the namespace of a server is expected");
   return parameters;
 }
 

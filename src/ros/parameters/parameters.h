@@ -5,6 +5,7 @@
 
 #include <ros/node_handle.h>
 
+#include <cmath>
 #include <curve_proximity/description.hpp>
 #include <limits>
 #include <map>
@@ -83,6 +84,10 @@ struct Range {
   double least = 0.0;
   bool open = false; /**< least itself is not allowed */
   double most = std::numeric_limits<double>::infinity();
+
+  bool holds(double value) const {
+    return (open ? value > least : value >= least) && value <= most && std::isfinite(value);
+  }
 };
 
 /** What a server leaves on the master for the one that comes after it. */

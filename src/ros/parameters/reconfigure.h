@@ -9,7 +9,6 @@
 #include <ros/node_handle.h>
 
 #include <atomic>
-#include <cmath>
 #include <functional>
 
 #include "parameters/tuning.h"
@@ -35,17 +34,15 @@ class Reconfigure {
     take("delta", config.delta, tuning_.delta, Range{0.0, false, 10.0});
     take("budget_ms", config.budget_ms, tuning_.budget_ms, Range{0.0, true, 3600000.0});
     take("max_nodes", config.max_nodes, tuning_.max_nodes, Range{1.0, false, 1e9});
-    std::atomic<int> threads{tuning_.threads.load()};
-    take("threads", config.threads, threads, Range{1.0, false, 256.0});
-    tuning_.threads = threads.load();
-    threads_(threads);
+    take("threads", config.threads, tuning_.threads, Range{1.0, false, 256.0});
+    threads_(tuning_.threads);
   }
 
   /** What is refused stays as it is; the answer of ~set_parameters tells what is in force. */
   template <class Number>
   static void take(const char *name, Number &given, std::atomic<Number> &value, const Range &range) {
     const auto x = static_cast<double>(given);
-    if (std::isfinite(x) && (range.open ? x > range.least : x >= range.least) && x <= range.most) {
+    if (range.holds(x)) {
       value = given;
       return;
     }
