@@ -3,7 +3,6 @@
 
 #include <curve_proximity/local_call.hpp>
 #include <map>
-#include <memory>
 #include <mutex>
 #include <shared_mutex>
 

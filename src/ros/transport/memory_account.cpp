@@ -48,10 +48,6 @@ void setLimit(std::size_t bytes) {
   most = bytes;
 }
 
-std::size_t limit() {
-  return most;
-}
-
 std::size_t resident() {
   // The second number of /proc/self/statm, in pages; read without an allocation.
   char text[128];
@@ -68,7 +64,7 @@ std::size_t resident() {
 
 Share::Share(std::size_t bytes, std::size_t most_of_request) : bytes_(bytes < SMALL ? 0 : bytes) {
   if (bytes_ == 0) return;
-  const std::size_t all = limit();
+  const std::size_t all = most;
   const std::size_t least = all > 0 ? std::min(most_of_request, all / 2) : most_of_request;
   if (bytes_ > least)
     throw Error("too large: the request would take about " + megabytes(bytes_) + ", more than the " + megabytes(least) +

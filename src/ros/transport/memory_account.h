@@ -13,7 +13,6 @@ constexpr std::size_t OF_POINT = 400, OF_VALUE = 128;
 
 /** [bytes] The most that the process may take; 0: no limit. */
 void setLimit(std::size_t bytes);
-std::size_t limit();
 
 /** [bytes] What the process has resident now. */
 std::size_t resident();

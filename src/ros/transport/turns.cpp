@@ -112,14 +112,16 @@ void Turn::yield() {
   turns_.wait(ticket_, lock, Turns::Clock::time_point::max());
 }
 
-void Turn::giveBack() {
-  const Turns::Lock lock(turns_.mutex_);
-  turns_.release(ticket_);
+Turn::Pause::Pause(Turn *turn) : turn_(turn) {
+  if (!turn_) return;
+  const Turns::Lock lock(turn_->turns_.mutex_);
+  turn_->turns_.release(turn_->ticket_);
 }
 
-void Turn::takeAgain() {
-  Turns::Lock lock(turns_.mutex_);
-  turns_.wait(ticket_, lock, Turns::Clock::time_point::max());
+Turn::Pause::~Pause() {
+  if (!turn_) return;
+  Turns::Lock lock(turn_->turns_.mutex_);
+  turn_->turns_.wait(turn_->ticket_, lock, Turns::Clock::time_point::max());
 }
 
 } // namespace curve_proximity

@@ -89,12 +89,8 @@ class Turn {
   /** Nobody's turn is held while this thread waits for something else. turn may be null. */
   class Pause {
    public:
-    explicit Pause(Turn *turn) : turn_(turn) {
-      if (turn_) turn_->giveBack();
-    }
-    ~Pause() {
-      if (turn_) turn_->takeAgain();
-    }
+    explicit Pause(Turn *turn);
+    ~Pause();
     Pause(const Pause &) = delete;
     Pause &operator=(const Pause &) = delete;
 
@@ -103,9 +99,6 @@ class Turn {
   };
 
  private:
-  void giveBack();
-  void takeAgain();
-
   Turns &turns_;
   Turns::Ticket ticket_;
 };
