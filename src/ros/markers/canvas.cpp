@@ -2,14 +2,12 @@
 #include "markers/canvas.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <vector>
 
 #include "../../scene/geometry/surface.h"
 #include "messages/geometry_message.h"
-#include "messages/gradient_message.h"
 
 namespace curve_proximity {
 namespace {

@@ -8,7 +8,6 @@
 #include <array>
 #include <curve_proximity/geometry.hpp>
 #include <string>
-#include <utility>
 
 namespace curve_proximity {
 

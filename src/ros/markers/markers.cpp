@@ -54,8 +54,7 @@ void addCurves(Canvas &canvas, const Snapshot &scene, const Drawing &drawing, co
   }
 }
 
-} // namespace
-
+/** Drawings may be null. */
 MarkerArray toMarkers(const Snapshot &scene, const Drawing *curves, const Drawing *motion, const std::string &frame,
                       const MarkerResources &resources) {
   Canvas canvas(frame);
@@ -73,6 +72,8 @@ MarkerArray toMarkers(const Snapshot &scene, const Drawing *curves, const Drawin
   if (curves) addCurves(canvas, scene, *curves, everything);
   return canvas.take();
 }
+
+} // namespace
 
 MarkerPublisher::MarkerPublisher(ros::NodeHandle &handle, const Scene &scene, const std::string &frame,
                                  MarkerResources resources)
@@ -98,20 +99,16 @@ void MarkerPublisher::showState(std::shared_ptr<const Drawing> drawing) {
   changed_ = changed_ || !motion_;
 }
 
-void MarkerPublisher::forget() {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  curves_.reset();
-  motion_.reset();
-  state_.reset();
-  changed_ = true;
-}
-
 void MarkerPublisher::publishIfNew() {
-  if (!isWatched()) return forget();
   const SnapshotPtr scene = scene_.snapshot();
   std::shared_ptr<const Drawing> curves, motion;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
+    if (!isWatched()) {
+      curves_ = motion_ = state_ = nullptr;
+      changed_ = true;
+      return;
+    }
     if (!changed_ && shown_scene_ == scene->version()) return;
     changed_ = false;
     shown_scene_ = scene->version();

@@ -7,7 +7,6 @@
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 #include <ros/wall_timer.h>
-#include <visualization_msgs/MarkerArray.h>
 
 #include <memory>
 #include <mutex>
@@ -22,22 +21,19 @@ struct MarkerResources {
   ResourceOptions objects, robot;
 };
 
-/** All markers in the fixed frame, after one that deletes what was shown before. By namespace:
+/** Publishes ~markers, latched, a few times a second at most: all in the fixed frame, after one that deletes what was
+ *  shown before. Where nobody listens nothing is drawn, and no drawing is kept: it would hold the scene that it was made
+ *  in. By namespace:
  *    scene    the objects
  *    curves   the curves, coloured by clearance: tubes of their radius
  *    robot    the robot: along a trajectory at its closest moment, each link coloured by its clearance from the objects
  *    swept    the robot on its way
  *    sweep    the way of the point of the robot that comes closest
  *    pairs    the closest pairs, each a line with its ends; labels: how long they are
- *  Drawings may be null. Pairs are shown only as long as the scene is the one they were measured in.
+ *  Pairs are shown only as long as the scene is the one they were measured in.
  *
  *  Colours come from plain distances at sampled parameters: they are for the eye. The certified answers are the pairs
  * with their labels. */
-visualization_msgs::MarkerArray toMarkers(const Snapshot &scene, const Drawing *curves, const Drawing *motion,
-                                          const std::string &frame, const MarkerResources &resources);
-
-/** Publishes ~markers, latched, a few times a second at most. Where nobody listens nothing is drawn, and no drawing is
- *  kept: it would hold the scene that it was made in. */
 class MarkerPublisher {
  public:
   /** handle: its callback queue runs the timer. scene: kept by reference. */
@@ -56,7 +52,6 @@ class MarkerPublisher {
   }
 
  private:
-  void forget();
   void publishIfNew();
 
   const Scene &scene_;
