@@ -14,7 +14,6 @@
 #include "messages/scene_message.h"
 #include "messages/trajectory_message.h"
 #include "queries/row_message.h"
-#include "queries/time_budget.h"
 #include "transport/memory_account.h"
 #include "transport/request_limits.h"
 #include "transport/turns.h"

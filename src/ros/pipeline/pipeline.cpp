@@ -2,10 +2,10 @@
 #include "pipeline/pipeline.h"
 
 #include <ros/console.h>
+#include <sensor_msgs/JointState.h>
 
 #include <curve_proximity/fingerprint.hpp>
 #include <iterator>
-#include <memory>
 #include <type_traits>
 #include <utility>
 
@@ -202,12 +202,10 @@ void Pipeline::tellContacts(const ProximityResults &results) {
 /** The profile of what was answered. It is asked for only where somebody looks. */
 void Pipeline::tellClearance(const QueryRequest &request, const ProximityResults &results) {
   if (!clearance_ || !clearance_->isWatched()) return;
-  QueryRequest again(QueryType::DISTANCE, 0.0, request.more);
-  again.curves = request.curves;
-  again.paths = request.paths;
-  again.trajectories = request.trajectories;
-  again.multi_dof_trajectories = request.multi_dof_trajectories;
-  again.coverage = request.coverage;
+  QueryRequest again(request);
+  again.query_type = QueryType::DISTANCE;
+  again.delta = 0.0;
+  again.arrival = std::chrono::steady_clock::now();
   question::Profile asked;
   asked.intervals = static_cast<std::size_t>(parameters_.profile_intervals);
   again.question = asked;

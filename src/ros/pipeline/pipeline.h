@@ -3,14 +3,9 @@
 #ifndef CURVE_PROXIMITY_ROS_PIPELINE_H
 #define CURVE_PROXIMITY_ROS_PIPELINE_H
 
-#include <curve_proximity/Curve.h>
 #include <curve_proximity/ProximityResults.h>
-#include <nav_msgs/Path.h>
 #include <ros/node_handle.h>
 #include <ros/wall_timer.h>
-#include <sensor_msgs/JointState.h>
-#include <trajectory_msgs/JointTrajectory.h>
-#include <trajectory_msgs/MultiDOFJointTrajectory.h>
 
 #include <atomic>
 #include <cstdint>

@@ -131,10 +131,9 @@ void BatchAction::answer(Batch &batch) {
         Turn turn(turns_, "~query", Turns::Clock::time_point::max());
         request.turn = &turn;
         request.cancelled = [&batch] { return batch.cancelled.load(); };
-        const Progress progress = [&](const QueryResponse &response, std::size_t done) {
+        request.progress = [&](const QueryResponse &response, std::size_t done) {
           if (feedback.update(response, done)) batch.handle.publishFeedback(feedback.message());
         };
-        request.progress = &progress;
         QueryResponse response;
         Drawing drawing;
         queries_.answer(request, response, drawing);

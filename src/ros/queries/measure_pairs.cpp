@@ -9,7 +9,6 @@
 #include "messages/geometry_message.h"
 #include "messages/shape_message.h"
 #include "queries/row_message.h"
-#include "queries/time_budget.h"
 #include "transport/request_limits.h"
 #include "world/robot_description.h"
 

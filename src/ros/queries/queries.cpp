@@ -157,8 +157,6 @@ std::size_t Queries::checkLimits(const QueryRequest &request, const Snapshot &sn
     names.check(trajectory);
     values += trajectory.points.size() * trajectory.joint_names.size();
   }
-  demandAtMost("max_control_points", parameters_.max_control_points, values, "joint values");
-
   for (const RobotTrajectory &robot : request.more.moving_robots)
     values += robot.trajectory.points.size() * robot.trajectory.joint_names.size();
   demandAtMost("max_control_points", parameters_.max_control_points, values, "joint values");
@@ -287,7 +285,7 @@ void Queries::describe(Work &work) const {
 
 void Queries::tellProgress(Work &work) {
   ++work.done;
-  if (work.request.progress) (*work.request.progress)(work.response, work.done);
+  if (work.request.progress) work.request.progress(work.response, work.done);
 }
 
 } // namespace curve_proximity

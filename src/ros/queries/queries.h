@@ -9,11 +9,9 @@
 #include <curve_proximity/ProximityQuery.h>
 #include <curve_proximity/SceneState.h>
 #include <nav_msgs/Path.h>
-#include <sensor_msgs/JointState.h>
 #include <trajectory_msgs/JointTrajectory.h>
 #include <trajectory_msgs/MultiDOFJointTrajectory.h>
 
-#include <algorithm>
 #include <atomic>
 #include <boost/range/iterator_range.hpp>
 #include <curve_proximity/motion.hpp>
@@ -70,8 +68,8 @@ struct QueryRequest {
   Coverage coverage;          /**< what of the trajectories' source is not in them */
   double budget_ms = 0.0;     /**< 0: the server's */
   std::chrono::steady_clock::time_point arrival = std::chrono::steady_clock::now(); /**< when the budget begins */
-  std::function<bool()> cancelled;    /**< once true, it ends this query; empty: nobody can */
-  const Progress *progress = nullptr; /**< called after each curve and trajectory; null: nobody is told */
+  std::function<bool()> cancelled; /**< once true, it ends this query; empty: nobody can */
+  Progress progress;               /**< called after each curve and trajectory; empty: nobody is told */
   std::vector<Problem> *problems =
       nullptr;          /**< not null: the rows are not answered, but told as the checker reads them */
   Turn *turn = nullptr; /**< given back to others now and then; may be null */

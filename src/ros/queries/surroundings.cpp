@@ -88,14 +88,15 @@ Surroundings::Surroundings(const SnapshotPtr &snapshot, const ProximityQuery &qu
   const std::int64_t origin = originOf(query, *snapshot, has_subject_, stamp);
   const std::vector<MovingObject> objects = movingObjects(*snapshot, origin);
   const std::size_t own = has_subject_ ? snapshot->robot()->links().size() * (points + 2) : 0;
-  share_.emplace(bytesOfMovers(objects, own + gather(query, robots, origin, lookup)), most_bytes);
+  gathered_ = gatherRobots(query.moving_robots, robots, origin, lookup);
+  share_.emplace(bytesOfMovers(objects, own + gathered_.values), most_bytes);
   if (subject) {
     const MovingRobot robot{snapshot->robot()->name(), std::move(subject), 0.0, 0.0};
-    checkClocks(robot, robots_, objects);
-    robots_.insert(robots_.begin(), robot);
+    checkClocks(robot, gathered_.robots, objects);
+    gathered_.robots.insert(gathered_.robots.begin(), robot);
   }
   const std::vector<std::array<std::string, 2>> none;
-  movers_ = std::make_shared<const Movers>(snapshot, robots_, objects, none, ResourceOptions(), stop);
+  movers_ = std::make_shared<const Movers>(snapshot, gathered_.robots, objects, none, ResourceOptions(), stop);
 }
 
 Surroundings::Surroundings(const SnapshotPtr &snapshot, const ProximityQuery &query, const FurtherRobots &robots,
@@ -105,23 +106,15 @@ Surroundings::Surroundings(const SnapshotPtr &snapshot, const ProximityQuery &qu
   const std::int64_t origin = originOf(query, *snapshot, true, stamp);
   std::vector<MovingObject> objects = movingObjects(*snapshot, origin);
   objects.push_back(rides);
-  share_.emplace(bytesOfMovers(objects, gather(query, robots, origin, lookup)), most_bytes);
+  gathered_ = gatherRobots(query.moving_robots, robots, origin, lookup);
+  share_.emplace(bytesOfMovers(objects, gathered_.values), most_bytes);
   const std::vector<std::array<std::string, 2>> none;
-  movers_ = std::make_shared<const Movers>(snapshot, robots_, objects, none, resources, stop);
-}
-
-/** The further robots; returns how many values they have. */
-std::size_t Surroundings::gather(const ProximityQuery &query, const FurtherRobots &robots, std::int64_t origin,
-                                 FrameLookup &lookup) {
-  GatheredRobots gathered = gatherRobots(query.moving_robots, robots, origin, lookup);
-  robots_ = std::move(gathered.robots);
-  unknown_ = std::move(gathered.unknown);
-  return gathered.values;
+  movers_ = std::make_shared<const Movers>(snapshot, gathered_.robots, objects, none, resources, stop);
 }
 
 MoversSubject Surroundings::subject(bool against_self) const {
-  return {*movers_, has_subject_ ? &robots_.front() : nullptr, against_self ? Against::BOTH : Against::OTHERS, rides_,
-          rides_over_};
+  return {*movers_, has_subject_ ? &gathered_.robots.front() : nullptr, against_self ? Against::BOTH : Against::OTHERS,
+          rides_, rides_over_};
 }
 
 } // namespace curve_proximity

@@ -64,23 +64,19 @@ class Surroundings {
     return movers_;
   }
   const std::vector<MovingRobot> &robots() const {
-    return robots_;
+    return gathered_.robots;
   }
   /** As of GatheredRobots. */
   const std::string &unknown() const {
-    return unknown_;
+    return gathered_.unknown;
   }
 
  private:
-  std::size_t gather(const ProximityQuery &query, const FurtherRobots &robots, std::int64_t origin,
-                     FrameLookup &lookup);
-
   bool has_subject_ = false;
   std::string rides_;                  /* the body that is asked about; else empty */
   std::array<double, 2> rides_over_{}; /* [s] from when to when */
   std::optional<memory::Share> share_;
-  std::vector<MovingRobot> robots_; /* the subject first */
-  std::string unknown_;
+  GatheredRobots gathered_; /* the subject first */
   std::shared_ptr<const Movers> movers_;
 };
 
