@@ -324,8 +324,10 @@ bool PlanningSceneTopic::askOnce(moveit::PlanningScene &scene) {
         good = true;
       },
       [&](const std::string &why) { warn("~get_planning_scene: " + why); });
-  if (!good) client.shutdown();
-  return good;
+  if (good) return true;
+  const std::lock_guard<std::mutex> lock(asking_); // roscpp frees a connection twice that two threads end at once
+  client.shutdown();
+  return false;
 }
 
 } // namespace curve_proximity
