@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "../../scene/motion/trajectory_points.h"
+#include "transport/checked_stream.h"
 #include "transport/guard.h"
 
 namespace curve_proximity {
@@ -120,9 +121,9 @@ MotionWatches::MotionWatches(const ros::NodeHandle &handle, const GateParameters
       calls_(handle, parameters.server, parameters.delta, proofs),
       queue_(2) {
   ros::NodeHandle own = handle;
-  states_ = own.subscribe<sensor_msgs::JointState>(
-      "joint_states", SCENE_QUEUE,
-      [this](const sensor_msgs::JointStateConstPtr &state) { guarded([&] { tell(*state); }, logGateError); });
+  ros::SubscribeOptions states = checkedSubscription<sensor_msgs::JointState>(
+      "joint_states", SCENE_QUEUE, [this](const auto &state) { guarded([&] { tell(*state); }, logGateError); });
+  states_ = own.subscribe(states);
   own.setCallbackQueue(&queue_);
   const ros::WallDuration period(PERIOD);
   looking_ =

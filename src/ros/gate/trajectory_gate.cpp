@@ -52,12 +52,13 @@ template <class Message>
 void TrajectoryGate::connect(const std::string &topic, std::vector<Message> ProximityQuery::*motions,
                              const ros::Publisher &out) {
   using Pointer = boost::shared_ptr<const Message>;
-  subscribers_.push_back(handle_.subscribe<Message>(topic, MOTION_QUEUE, [=](const Pointer &message) {
+  ros::SubscribeOptions options = checkedSubscription<Message>(topic, MOTION_QUEUE, [=](const Pointer &message) {
     if constexpr (std::is_same_v<Message, JointTrajectory>)
       if (message->points.empty()) return stop(message);
     const std::uint64_t stops = stops_;
     queue_.add([=] { guarded([&] { judge(topic, motions, message, stops, out); }, logGateError); });
-  }));
+  });
+  subscribers_.push_back(handle_.subscribe(options));
 }
 
 void TrajectoryGate::stop(const trajectory_msgs::JointTrajectoryConstPtr &message) {
