@@ -161,6 +161,13 @@ class Budgets(Case):
         along.gradient = True
         self.asks('gradient of %d links' % MANY, 'distance', query=along)
 
+    def test_a_long_matrix(self):
+        pairs = ''.join('<disable_collisions link1="l%d" link2="l%d" reason="Never"/>' % (i, j)
+                        for i in range(1, MANY) for j in range(i + 1, min(i + 50, MANY)))
+        self.set_param('/robot_description_semantic', '<robot name="chain">%s</robot>' % pairs)
+        self.begin('punctual_matrix', MANY)
+        self.asks('the collision matrix of %d links, 50,000 pairs disabled' % MANY, 'collision_matrix')
+
     def test_pairs_and_constraints(self):
         self.begin('punctual_pairs')
         balls = [Body(type='sphere', dimensions=[0.1 * k]) for k in (1, 2)]

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "queries/link_pairs.h"
 
-#include <algorithm>
 #include <cmath>
 #include <curve_proximity/collision_matrix.hpp>
 #include <curve_proximity/nearest_name.hpp>
+#include <set>
 
 namespace curve_proximity {
 namespace {
 
-bool names(const std::vector<std::array<std::string, 2>> &pairs, const std::array<std::string, 2> &pair) {
-  return std::any_of(pairs.begin(), pairs.end(), [&](const std::array<std::string, 2> &one) {
-    return one == pair || (one[0] == pair[1] && one[1] == pair[0]);
-  });
+using NamePair = std::array<std::string, 2>;
+
+NamePair sorted(const NamePair &pair) {
+  return pair[1] < pair[0] ? NamePair{pair[1], pair[0]} : pair;
 }
 
 void fill(const LinkContact &contact, LinkPair &row) {
@@ -43,17 +43,18 @@ void answerLinkPairs(const ListLinkPairs::Request &request, ListLinkPairs::Respo
     if (links.count(link) == 0) throw Error("the robot has no link '" + link + "'" + didYouMean(link, namesOf(links)));
 
   const CollisionMatrix matrix(snapshot);
-  const auto isAsked = [&](const std::string &link) {
-    return request.links.empty() || std::count(request.links.begin(), request.links.end(), link) > 0;
-  };
+  const std::set<std::string> asked(request.links.begin(), request.links.end());
+  const auto isAsked = [&](const std::string &link) { return asked.empty() || asked.count(link) > 0; };
+  std::set<NamePair> disabled; // a list of them is as long as the matrix
+  for (const NamePair &pair : live.disabled(*snapshot)) disabled.insert(sorted(pair));
   Workspace workspace;
   response.success = true;
   for (std::size_t i = 0; i < matrix.pairs().size(); ++i) {
-    const std::array<std::string, 2> &pair = matrix.pairs()[i];
+    const NamePair &pair = matrix.pairs()[i];
     if (!isAsked(pair[0]) && !isAsked(pair[1])) continue;
     LinkPair row;
     row.a = pair[0], row.b = pair[1];
-    row.allowed = names(live.disabled(*snapshot), pair) || snapshot->mayTouch(pair[0], pair[1]);
+    row.allowed = disabled.count(sorted(pair)) > 0 || snapshot->mayTouch(pair[0], pair[1]);
     row.contact = LinkPair::UNDECIDED;
     row.upper = INFINITY;
     try {
