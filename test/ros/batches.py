@@ -7,8 +7,8 @@ import time
 
 import rospy
 from actionlib_msgs.msg import GoalStatus
-from curve_proximity.msg import QueryAction, QueryActionFeedback, QueryActionResult, QueryGoal
-from helpers import ActionClient, Case, Server, bezier, heard, query, ring_and_shells, run, sphere, until
+from curve_proximity.msg import QueryAction, QueryActionFeedback, QueryActionGoal, QueryActionResult, QueryGoal
+from helpers import ActionClient, Case, Server, bezier, heard, lying, peak_mb, query, ring_and_shells, run, sphere, until
 
 
 class Batches(Case):
@@ -39,6 +39,17 @@ class Batches(Case):
             if a.id != 'bad':
                 self.assertEqual((a.lower, a.upper, a.t), (b.lower, b.upper, b.t))
         self.assertEqual(len(result.results), 300)
+
+    def test_counts_that_lie_take_no_memory(self):
+        """2^24 points would be 400 MB; the goal holds 7."""
+        goals, results = self.publisher('/curve_proximity/query/goal', QueryActionGoal), heard('/curve_proximity/query/result', QueryActionResult)
+        before, goal = peak_mb('/curve_proximity'), QueryActionGoal()
+        goal.goal.query = query([bezier(*[(i, 0, 2) for i in range(7)])])
+        goal.goal_id.id = 'honest'
+        goals.publish(lying(goal))
+        goals.publish(goal)
+        self.assertTrue(until(lambda: 'honest' in [result.status.goal_id.id for result in results], 10))
+        self.assertLess(peak_mb('/curve_proximity'), before + 100)
 
     def test_feedback_tells_how_far_it_is(self):
         ring, balls, _ = ring_and_shells(shells=1, n=3000)

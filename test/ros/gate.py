@@ -3,21 +3,17 @@
 """The gate as an action between a planner and a controller: what is clear passes, what is not is refused with its reason, and what
 stops being clear while it runs is cancelled."""
 import math
-import re
 import signal
-import struct
 import threading
 import time
-from xmlrpc.client import ServerProxy
 
 import actionlib
-import rosgraph
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from curve_proximity.msg import CollisionObject, Curve, Proximity, Refusal
 from foreign_types import control
-from helpers import (ActionClient, Case, Node, Server, bezier, connected, free_flight, heard, joint_trajectory, joints, moving, path, run,
-                     serialized, sphere, thing, turned, until, waypoint)
+from helpers import (ActionClient, Case, Node, Server, bezier, connected, free_flight, heard, joint_trajectory, joints, lying, moving,
+                     path, peak_mb, run, sphere, thing, turned, until, waypoint)
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
@@ -322,22 +318,14 @@ class Gate(ArmCase):
 
     def test_counts_that_lie_take_no_memory(self):
         """2^24 points or names would be 400 MB; the messages hold 7."""
-        def lying(message):
-            data = serialized(message).replace(struct.pack('<I', 7), struct.pack('<I', 1 << 24), 1)
-            return type('Lying', (type(message),), {'serialize': lambda _, buffer: buffer.write(data)})()
-
-        def peak_mb():
-            with open('/proc/%d/status' % pid) as status:
-                return int(re.search(r'VmHWM:\s*(\d+)', status.read())[1]) / 1024
-        pid = ServerProxy(rosgraph.Master('/test').lookupNode('/alone_gate')).getPid('/test')[2]
-        refused, before, curve = heard('/alone_gate/refused', Refusal), peak_mb(), bezier(*[(i, 0, 2) for i in range(7)])
+        refused, before, curve = heard('/alone_gate/refused', Refusal), peak_mb('/alone_gate'), bezier(*[(i, 0, 2) for i in range(7)])
         curves = self.publisher('/alone_gate/curve', Curve)
         self.states.publish(lying(JointState(name=list('abcdefg'))))
         curves.publish(lying(curve))
         curves.publish(curve)
         self.assertTrue(until(lambda: refused, 10))  # its server is not there
         self.assertEqual(refused[0].source, 'curve')
-        self.assertLess(peak_mb(), before + 100)
+        self.assertLess(peak_mb('/alone_gate'), before + 100)
 
     def test_a_trajectory_that_passed_is_stopped_when_what_is_left_of_it_is_no_longer_clear(self):
         self.topic.publish(turning(2.0, 3.0))

@@ -293,6 +293,12 @@ def serialized(message):
     return buffer.getvalue()
 
 
+def lying(message):
+    """A message whose first count of seven says 2^24."""
+    data = serialized(message).replace(struct.pack('<I', 7), struct.pack('<I', 1 << 24), 1)
+    return type('Lying', (type(message),), {'serialize': lambda _, buffer: buffer.write(data)})()
+
+
 class RawClient:
     """A connection to a service that sends bytes."""
 
@@ -365,6 +371,13 @@ def resident_mb(pid, shadow=False):
         return sum(map(int, re.findall(r'VmRSS:\s*(\d+)', text))) / 1024  # none: it has ended
     mappings = re.findall(r'^([0-9a-f]+)-[0-9a-f]+ .*?^Rss: +(\d+)', text, re.M | re.S)
     return sum(int(size) for begin, size in mappings if int(begin, 16) not in SHADOW) / 1024
+
+
+def peak_mb(node):
+    """The most that a node has had resident."""
+    pid = xmlrpc.client.ServerProxy(rosgraph.Master('/test').lookupNode(node)).getPid('/test')[2]
+    with open('/proc/%d/status' % pid) as status:
+        return int(re.search(r'VmHWM:\s*(\d+)', status.read())[1]) / 1024
 
 
 def cpu_seconds(pid):

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "transport/checked_stream.h"
 #include "transport/guard.h"
 
 namespace curve_proximity {
@@ -62,7 +63,9 @@ BatchAction::BatchAction(const ros::NodeHandle &handle, const std::string &fixed
                          const std::atomic<bool> &stop)
     : fixed_frame_(fixed_frame), queries_(queries), turns_(turns), stop_(stop), handle_(handle) {
   const auto keep = [this](const GoalEvent &goal) { last_ = goal; };
-  goals_ = handle_.subscribe<QueryActionGoal, const GoalEvent &>("query/goal", MOST_GOALS, keep);
+  // The first of a topic's subscribers reads its messages, for actionlib, too.
+  ros::SubscribeOptions goals = checkedSubscription<QueryActionGoal, const GoalEvent &>("query/goal", MOST_GOALS, keep);
+  goals_ = handle_.subscribe(goals);
   server_ = std::make_unique<Server>(
       handle_, "query", [this](Server::GoalHandle goal) { guarded([&] { begin(std::move(goal)); }, logQueryError); },
       [this](Server::GoalHandle goal) { guarded([&] { cancel(std::move(goal)); }, logQueryError); }, false);
