@@ -106,6 +106,16 @@ TEST(LiveScene, a_cloud_is_as_old_as_the_message_that_shows_it) {
   EXPECT_EQ(mixed, 0);
 }
 
+TEST(LiveScene, a_message_that_came_after_an_object_was_set_stays) {
+  ros::Time::init();
+  SensorBoard board;
+  board.saw(CLOUD, ros::Time::now(), 0, 5);
+  board.forget(CLOUD, 4);
+  EXPECT_EQ(board.states().size(), 1u);
+  board.forget(CLOUD, 5);
+  EXPECT_TRUE(board.states().empty());
+}
+
 /* A whole scene of move_group keeps the objects of those sensors that were known when it was made. */
 TEST(LiveScene, a_cloud_that_a_whole_scene_takes_away_is_unknown_at_once) {
   SceneChange whole;

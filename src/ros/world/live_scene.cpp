@@ -73,10 +73,12 @@ std::vector<std::string> LiveScene::apply(const SceneChange &change, const Snaps
     emptying.emplace(sensors, std::vector<std::string>());
   else if (change.clear_objects)
     emptying.emplace(sensors, change.kept);
-  std::vector<std::string> errors = scene.apply(change);
+  std::uint64_t version = 0;
+  std::vector<std::string> errors = scene.apply(change, [&](std::uint64_t applied) { version = applied; });
 
   // What somebody has set or removed by name is no sensor's until its next message.
   const SnapshotPtr after = scene.snapshot();
+  if (!errors.empty()) version = after->version();
   const auto object = [](const Snapshot &snapshot, const std::string &id) {
     const auto found = snapshot.objects().find(id);
     return found == snapshot.objects().end() ? nullptr : found->second;
@@ -86,7 +88,7 @@ std::vector<std::string> LiveScene::apply(const SceneChange &change, const Snaps
     if (!errors.empty() && object(before, id) == object(*after, id)) continue;
     // what is moved, or has another part, is as unknown as before
     if (operation.kind != Operation::Kind::ADD && operation.kind != Operation::Kind::REMOVE) continue;
-    if (!removesAll(operation)) sensors.forget(id);
+    if (!removesAll(operation)) sensors.forget(id, version);
     unknowns.forget(REFUSED_OBJECT + id);
   }
   for (const Attachment &attachment : change.attachments)

@@ -91,10 +91,14 @@ class SensorBoard {
     return changes_;
   }
 
-  /** The object is no sensor's any more: somebody has set or removed it. */
-  void forget(const std::string &id) {
+  /** The object is no sensor's any more: somebody has set or removed it in this version of the scene. A message that
+   *  came later stays. */
+  void forget(const std::string &id, std::uint64_t version) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    changes_ += sensors_.erase(id);
+    const auto found = sensors_.find(id);
+    if (found == sensors_.end() || found->second.since > version) return;
+    sensors_.erase(found);
+    ++changes_;
   }
 
   /** Told of each object that was not there; set before the first message. */
