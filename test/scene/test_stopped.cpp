@@ -274,6 +274,19 @@ TEST_F(Stopped, an_arm_says_what_it_knows) {
   }
 }
 
+TEST_F(Stopped, an_arm_with_errors_says_what_it_knows) {
+  ErrorBounds errors;
+  errors.every_joint.tracking = 0.002;
+  const auto arm = motion(3);
+  for (const bool self : {false, true}) {
+    const Count count = stopAll([&](const Query &, const std::function<void(const Subject &)> &then) {
+      then(MotionSubject{*arm, self, &errors});
+    });
+    EXPECT_GE(count.answered, 4u);
+    EXPECT_GE(count.stopped, 4u);
+  }
+}
+
 TEST_F(Stopped, movers_say_what_they_know) {
   const auto arm = motion(4);
   MovingObject cart;

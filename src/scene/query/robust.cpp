@@ -132,7 +132,13 @@ std::vector<ClearanceInterval> robustProfile(const RobotMotion &motion, bool sel
   std::vector<ClearanceInterval> profile = profileOfNothing(breaks);
   if (!asked.pairs.empty()) {
     const Obstacles obstacles(asked.obstacles, CPROX_INDEX_NONE);
+    const auto stops = [&options = query.options] { return options.stop && options.stop(options.stop_user); };
     for (ClearanceInterval &one : profile) {
+      if (stops()) { // no other search begins
+        one.status = CPROX_STOPPED;
+        one.lower = 0.0;
+        continue;
+      }
       const std::array<double, 2> interval{one.t0, one.t1};
       cprox_options options = withoutRounding(query.options, asked.rounding);
       options.interval = interval.data();
