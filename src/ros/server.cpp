@@ -268,7 +268,7 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
     cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = tuning_.epsilon;
     options.max_nodes = static_cast<std::uint32_t>(tuning_.max_nodes.load());
-    answerLinkPairs(request, response, live_, options, budget);
+    answerLinkPairs(request, response, live_, options, parameters_.max_results, budget);
   });
   ros::SubscribeOptions topics[] = {
       checkedSubscription<CollisionObject, const ObjectEvent &>(

@@ -7,7 +7,7 @@ import math
 import time
 
 import rospy
-from curve_proximity.msg import Body, CollisionObject, ConstraintQuery, PairQuery, RobotTrajectory
+from curve_proximity.msg import Body, CollisionObject, ConstraintQuery, ExecutionErrors, PairQuery, RobotTrajectory
 from helpers import (SERVICES, Case, Node, RawClient, Server, bezier, box, bspline, framed, joint_trajectory, joints, moving, path, point,
                      pose, query, run, serialized, sphere, turned, waypoint)
 
@@ -137,6 +137,8 @@ class Budgets(Case):
         state = query([], robot_state=True, joint_state=joints(j1=0.1, j2=0.2))
         self.each('the state among 10,000 objects', state)
         self.each('a trajectory of 100 points among 10,000 objects', query([], motion(100)))
+        erring = query([], motion(2), errors=[ExecutionErrors(tracking=0.002)])
+        self.each('a trajectory with errors among 10,000 objects', erring, SEARCHES + ['clearance_profile'])
         for subject, what in ((state, 'the state'), (query([], motion(2)), 'a trajectory'), (query([bezier((-1, 0, 1), (30, 30, 1))]),
                                                                                             'a curve')):
             subject.per_object, subject.joint_state = True, state.joint_state
@@ -165,8 +167,9 @@ class Budgets(Case):
         pairs = ''.join('<disable_collisions link1="l%d" link2="l%d" reason="Never"/>' % (i, j)
                         for i in range(1, MANY) for j in range(i + 1, min(i + 50, MANY)))
         self.set_param('/robot_description_semantic', '<robot name="chain">%s</robot>' % pairs)
-        self.begin('punctual_matrix', MANY)
-        self.asks('the collision matrix of %d links, 50,000 pairs disabled' % MANY, 'collision_matrix')
+        server = self.begin('punctual_matrix', MANY)
+        self.assertRefused(server.ask('collision_matrix'), '~max_results')
+        self.asks('180,000 pairs of %d links, 50,000 pairs disabled' % MANY, 'collision_matrix', links=['l%d' % i for i in range(1, 200)])
 
     def test_pairs_and_constraints(self):
         self.begin('punctual_pairs')

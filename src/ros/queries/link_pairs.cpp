@@ -6,6 +6,8 @@
 #include <curve_proximity/nearest_name.hpp>
 #include <set>
 
+#include "transport/request_limits.h"
+
 namespace curve_proximity {
 namespace {
 
@@ -29,7 +31,7 @@ void fill(const LinkContact &contact, LinkPair &row) {
 } // namespace
 
 void answerLinkPairs(const ListLinkPairs::Request &request, ListLinkPairs::Response &response, const LiveScene &live,
-                     cprox_options options, TimeBudget &budget) {
+                     cprox_options options, int most_pairs, TimeBudget &budget) {
   if (!(request.epsilon >= 0.0 && std::isfinite(request.epsilon)))
     throw Error("epsilon is " + std::to_string(request.epsilon) + ": it must be finite and at least 0");
   if (request.epsilon > 0.0) options.epsilon = request.epsilon;
@@ -42,9 +44,15 @@ void answerLinkPairs(const ListLinkPairs::Request &request, ListLinkPairs::Respo
   for (const std::string &link : request.links)
     if (links.count(link) == 0) throw Error("the robot has no link '" + link + "'" + didYouMean(link, namesOf(links)));
 
-  const CollisionMatrix matrix(snapshot);
   const std::set<std::string> asked(request.links.begin(), request.links.end());
   const auto isAsked = [&](const std::string &link) { return asked.empty() || asked.count(link) > 0; };
+  std::uint64_t with_geometry = 0, not_asked = 0;
+  for (const auto &[link, geometries] : links)
+    if (!geometries.empty()) ++with_geometry, not_asked += !isAsked(link);
+  const auto pairsOf = [](std::uint64_t n) { return n * (n - 1) / 2; };
+  demandAtMost("max_results", most_pairs, pairsOf(with_geometry) - pairsOf(not_asked), "pairs of links");
+
+  const CollisionMatrix matrix(snapshot);
   std::set<NamePair> disabled; // a list of them is as long as the matrix
   for (const NamePair &pair : live.disabled(*snapshot)) disabled.insert(sorted(pair));
   Workspace workspace;

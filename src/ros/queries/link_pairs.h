@@ -12,10 +12,10 @@
 
 namespace curve_proximity {
 
-/** options: of each pair. Throws Error where nothing can be answered at all; what is wrong with one pair becomes its
- *  row, and pairs that the budget does not reach are undecided. */
+/** options: of each pair. most_pairs: ~max_results. Throws Error where nothing can be answered at all; what is wrong
+ *  with one pair becomes its row, and pairs that the budget does not reach are undecided. */
 void answerLinkPairs(const ListLinkPairs::Request &request, ListLinkPairs::Response &response, const LiveScene &live,
-                     cprox_options options, TimeBudget &budget);
+                     cprox_options options, int most_pairs, TimeBudget &budget);
 
 } // namespace curve_proximity
 #endif
