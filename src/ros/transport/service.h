@@ -41,6 +41,7 @@ class RunningCall : public ros::CallbackInterface {
 
   CallResult call() override {
     ofThread() = this;
+    next_ = std::chrono::steady_clock::now() + PERIOD;
     const CallResult result = callback_->call();
     ofThread() = nullptr;
     return result;
@@ -60,7 +61,7 @@ class RunningCall : public ros::CallbackInterface {
   bool isGone() {
     const auto now = std::chrono::steady_clock::now();
     if (gone_ || now < next_) return gone_;
-    next_ = now + std::chrono::milliseconds(10);
+    next_ = now + PERIOD;
     asked_ = true;
     try {
       gone_ = callback_->call() == Invalid;
@@ -71,8 +72,10 @@ class RunningCall : public ros::CallbackInterface {
   }
 
  private:
+  static constexpr std::chrono::milliseconds PERIOD{10};
+
   const ros::CallbackInterfacePtr callback_;
-  std::chrono::steady_clock::time_point next_{};
+  std::chrono::steady_clock::time_point next_; /* when to ask again: it throws, which takes longer than a small query */
   bool asked_ = false, gone_ = false;
 };
 
