@@ -125,8 +125,8 @@ class States(Case):
         """The trajectory begins at one second, on the far side of a ball that only the way there meets."""
         self.server.replace(sphere('ball', 0.2, (2, 0, 0)))
         path = trajectory((1.5, 0.0), (1.6, 0.0), times=[1, 2])
-        for now, verdict in ((1.5, 'clear'), (-1.5, 'violated')):
-            answer = self.server.collision([], trajectory=path, joint_state=joints(one=now, two=0.0))
+        for position, verdict in ((1.5, 'clear'), (-1.5, 'violated')):
+            answer = self.server.collision([], trajectory=path, joint_state=joints(one=position, two=0.0))
             self.assertEqual(self.rows(answer)['environment'].verdict, verdict)
 
     def test_contacts_are_allowed_by_pair_and_by_default(self):

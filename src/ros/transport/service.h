@@ -30,8 +30,8 @@ struct Call {
   std::function<bool()> isGone; /**< has its client gone? By the thread of the call; empty: nobody can say */
 };
 
-/** A callback of a service, at work. roscpp tells a callback that its client has gone when it is called, not while it
- *  works: so it is called once more, now and then. If the client is there, this comes to ServiceHelper, which throws
+/** A callback of a service, at work. roscpp looks whether the client of a callback has gone when it is called, not while
+ *  it works: so it is called once more, now and then. If the client is there, this comes to ServiceHelper, which throws
  *  `Asked`. */
 class RunningCall : public ros::CallbackInterface {
  public:
