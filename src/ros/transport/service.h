@@ -57,8 +57,10 @@ class RunningCall : public ros::CallbackInterface {
     return asked_;
   }
 
-  /** Has the client closed its connection? By the thread that works. Once true it stays so. */
+  /** Has the client closed its connection? Once true it stays so. Only the thread that works can ask: in another one
+   *  the call would be answered again. */
   bool isGone() {
+    if (ofThread() != this) return false;
     const auto now = std::chrono::steady_clock::now();
     if (gone_ || now < next_) return gone_;
     next_ = now + PERIOD;
